@@ -155,8 +155,7 @@ class Effect(ABC):
         """
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """Usual distances from the nulls at a place of a robot `(parameters,)`: scale of priors and
-        of finite differences.
+        """Scale of priors and of finite differences at a place of a robot.
 
         Args:
             location: one of `locations`.
@@ -206,8 +205,7 @@ class Effect(ABC):
         return np.array([[p.low for p in self.parameters], [p.high for p in self.parameters]])
 
     def fixed(self, values: np.ndarray) -> np.ndarray:
-        """Which parameters stay as a search begins with them, as nothing lies between their choices
-        `(k,)` of bool.
+        """Which parameters stay as a search begins with them: nothing is between their choices.
 
         Args:
             values: of the parameters `(parameters,)`.
@@ -290,6 +288,10 @@ class Effect(ABC):
         """
         return None
 
+    def holds_torque(self, values: np.ndarray) -> bool:
+        """Whether its trace at some values `(parameters,)` holds the trusted torque, filtered."""
+        return False
+
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Values from which a search for the best fit to a log is worth while `(s, parameters)`,
         inside the bounds.
@@ -323,8 +325,7 @@ class Effect(ABC):
         return self.nulls[None]
 
     def steps(self, location: str, subject: Subject) -> np.ndarray:
-        """Steps of finite differences, small enough for the trace to be about straight over them
-        `(parameters,)`.
+        """Steps of finite differences, so small that the trace is about straight over them.
 
         Args:
             location: one of `locations`.

@@ -7,11 +7,6 @@ always rather scale torques down. The density of the believed torque has the mis
 (1 + a phi) believed - needed, it is p(u) (1 + a phi), so the log-likelihood gains n mean log(1 + a
 phi). A joint whose torque is less than the floor gains nothing so: that would only tell that the
 floor is high.
-
-Noise of accelerations is in the residual, and in the load that stretches a belt, too: with encoders
-at the joints a belt's trace takes the share x = J compliance omega^2 of it along, all of it where
-the rotor would ring. Noise of which a share f is that of accelerations shrinks to f (1 - x)^2 + 1 -
-f, and least squares would find a belt in any noise, that rings just below the smoother's crossover.
 """
 
 from __future__ import annotations
@@ -23,7 +18,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.placing import is_measured
-from hyperleg_design.gap.inference import noise_model
+from hyperleg_design.gap.inference.shrinking import Shrinking, shrinking
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.effect import Effect
@@ -64,38 +59,6 @@ class Factor:
         return self.number * float(ratio.mean()), self.number * float((ratio**2).mean())
 
 
-@dataclass(frozen=True, eq=False)
-class Shrinking:
-    """How a cause shrinks noise of accelerations, by 1 - slope phi of one parameter; as
-    `Factor`.
-    """
-
-    parameter: int
-    slope: np.ndarray
-    """Of some samples `(k,)`, over the usual size of the parameter."""
-    part: np.ndarray
-    """Share of their noise that is that of accelerations `(k,)`."""
-    number: np.ndarray
-    """Independent numbers that each stands for `(k,)`."""
-    row: int
-
-    def log(self, phi: float) -> float:
-        """Log of the density by which noise that shrinks must not gain."""
-        return 0.5 * float(self.number @ np.log(self._left(phi)))
-
-    def slopes(self, phi: float) -> tuple[float, float]:
-        """First derivative of `log`, and its second with the sign turned, where that is a
-        maximum.
-        """
-        keeps, left = 1 - self.slope * phi, self._left(phi)
-        first = -self.part * self.slope * keeps / left
-        second = 2 * first**2 - self.part * self.slope**2 / left
-        return float(self.number @ first), max(float(self.number @ second), 0.0)
-
-    def _left(self, phi: float) -> np.ndarray:
-        return np.maximum(self.part * (1 - self.slope * phi) ** 2 + 1 - self.part, LEAST**2)
-
-
 def factor(
     samples: Samples,
     effect: str,
@@ -108,9 +71,8 @@ def factor(
     """
     subject = samples.filtered_logs[0].signals.subject
     scaling = EFFECTS[effect]
-    inertia = None if values is None else scaling.noise_inertia(location, subject, values)
-    if inertia is not None:
-        return _shrinking(samples, subject.motors.index(location), usual, inertia)
+    if values is not None and (found := shrinking(samples, scaling, location, usual, values)):
+        return found
     if scaling.scales == "motor":
         motor = subject.motors.index(location)
         joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
@@ -134,47 +96,6 @@ def factor(
         * usual[0]
     )
     return Factor(0, slopes, number, _shows(samples, rows[0], motor, joint), rows[0])
-
-
-def _shrinking(samples: Samples, motor: int, usual: np.ndarray, inertia: float) -> Shrinking | None:
-    """Of a belt with an inertia on it [kg m^2]; None where its joint has no row."""
-    subject = samples.filtered_logs[0].signals.subject
-    moves = subject.joint_from_motor[:, motor]
-    joint = int(np.argmax(np.abs(moves)))
-    rows = [
-        i for i, r in enumerate(samples.rows) if r.residual_name == "motion" and r.column == joint
-    ]
-    if not rows:
-        return None
-    own = np.flatnonzero(samples.row == rows[0])
-    part, slope = np.zeros(len(samples.row)), np.zeros(len(samples.row))
-    for one, places in zip(samples.filtered_logs, samples.where, strict=True):
-        for place, row in enumerate(one.rows):
-            if (row.residual_name, row.column) == ("motion", joint):
-                feigned, rate = noise_model.of_acceleration(one, place)
-                part[places[place]] = feigned
-                slope[places[place]] = rate * _carried(one.signals, motor, joint)
-    part = np.minimum(part / samples.floor**2, 1.0)
-    slope *= inertia * usual[0]
-    return Shrinking(0, slope[own], part[own], samples.share[own], rows[0])
-
-
-def _carried(signals: Signals, motor: int, joint: int) -> float:
-    """Share of the noise of accelerations in a joint's residual that is in the load of its motor's
-    belt, too, through which it comes back.
-    """
-    if signals.noise is None:
-        return 0.0
-    level = np.nan_to_num(signals.noise) ** 2
-    whole = noise_model.inertias(signals)
-    load = np.tensordot(
-        signals.subject.motor_from_joint[motor], whole - signals.subject.armature[:, None], 1
-    )
-    both, all_of_it = (
-        float(np.mean(whole[joint] * load @ level)),
-        float(np.mean(whole[joint] ** 2 @ level)),
-    )
-    return float(signals.subject.joint_from_motor[joint, motor]) * both / max(all_of_it, 1e-300)
 
 
 def _shows(samples: Samples, row: int, motor: int, joint: int) -> float:

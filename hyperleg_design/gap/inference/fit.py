@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hyperleg_design.gap.inference.endogenous import Factor, Shrinking
+from hyperleg_design.gap.inference.endogenous import Factor
+from hyperleg_design.gap.inference.shrinking import Shrinking
 
 SINGULAR = 1e-13
 """Least eigenvalue, over the diagonal, of normal equations that are solved within bounds: less is
@@ -40,7 +41,7 @@ class Cause:
     declared: float = 0.0
     """Payload that the logs declare at its place [kg]."""
     factor: Factor | Shrinking | None = None
-    """How it scales the torque that the residual trusts, or noise of accelerations."""
+    """How it scales the torque that the residual trusts, or noise."""
     unseen: bool = False
     """Whether no log has the signal that drives it, a voltage or a temperature, so that it is
     modelled."""

@@ -17,9 +17,10 @@ from hyperleg_design.gap.inference.fit import within_bounds
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.assembly import Evidence
     from hyperleg_design.gap.inference.channels.scales import Scales
-    from hyperleg_design.gap.inference.endogenous import Factor, Shrinking
+    from hyperleg_design.gap.inference.endogenous import Factor
     from hyperleg_design.gap.inference.fit import Cause
     from hyperleg_design.gap.inference.rules import InferenceRules
+    from hyperleg_design.gap.inference.shrinking import Shrinking
 
 Name = tuple[str, str, bool]
 """Effect, location, and whether it acts in all logs, references included."""

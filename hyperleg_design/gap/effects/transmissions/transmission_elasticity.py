@@ -105,6 +105,17 @@ class TransmissionElasticity(MotorEffect):
             return None
         return machine.rotor(subject, subject.motors.index(location)) * (1 - side)
 
+    def holds_torque(self, values: np.ndarray) -> bool:
+        """Of belts that are stretched by `belt.given`, see `Effect.holds_torque`.
+
+        Args:
+            values: of the parameters `(parameters,)`.
+
+        Returns:
+            Whether it does.
+        """
+        return bool(values[SIDE] >= belt.CHOSEN and (values[3] >= belt.CHOSEN or values[4] > 0))
+
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Decide whether a log can show it, see `Effect.excited`.
 
