@@ -14,7 +14,6 @@ from hyperleg_design.gap.inference.prior_odds import prior_odds
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.assembly import Evidence
-    from hyperleg_design.gap.inference.fit import Cause
     from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
     from hyperleg_design.gap.inference.rules import InferenceRules
 
@@ -43,7 +42,7 @@ def log_prior(
             odds.append(
                 EFFECTS[cause.effect].odds(cause.location, evidence.signals[0].subject, values)
                 + min(prior_odds(cause, values), 0.0)
-                - _like_usual(cause, values, hypothesis.deviation(place), evidence, rules)
+                + beyond_usual(hypothesis, place, evidence, rules)
             )
             place += 1
         found += float(np.mean(odds))
@@ -74,27 +73,31 @@ def _one_way(
     return float(np.logaddexp(log_ndtr(clear).sum(), log_ndtr(-clear).sum()))
 
 
-def _like_usual(
-    cause: Cause,
-    values: np.ndarray,
-    deviation: np.ndarray,
-    evidence: Evidence,
-    rules: InferenceRules,
+def beyond_usual(
+    hypothesis: Hypothesis, place: int, evidence: Evidence, rules: InferenceRules
 ) -> float:
-    """Log odds against a cause that is no larger than the usual calibration error: the
-    posterior probability that one of its parameters lies beyond `usual` deviations of that
-    [nat]. What references tell has no such error.
+    """Log posterior probability that one of a cause's parameters lies beyond `usual` deviations of
+    the usual calibration error [nat]: of one that does not, nothing is wrong. What references tell
+    has no such error.
+
+    Args:
+        hypothesis: that it is in.
+        place: of the cause among those of the hypothesis.
+        evidence: channels.
+        rules: of the inference.
     """
+    cause = hypothesis.causes[place]
     if evidence.references and not cause.standing:
         return 0.0
+    values, deviation = hypothesis.values(place), hypothesis.deviation(place)
     own, factor = rules.cause, rules.posterior.interval
     odds = []
-    for place, (value, null) in enumerate(zip(values, cause.nulls, strict=True)):
-        usual = own.usual * evidence.usual.get((cause.effect, cause.location, place), 0.0)
-        if cause.shape[place] or value == null:
+    for i, (value, null) in enumerate(zip(values, cause.nulls, strict=True)):
+        usual = own.usual * evidence.usual.get((cause.effect, cause.location, i), 0.0)
+        if cause.shape[i] or value == null:
             continue
         if not usual:
             return 0.0
-        over = (abs(value - null) - usual) / max(factor * deviation[place], 1e-300)
-        odds.append(-float(log_ndtr(over)))
-    return min(odds, default=0.0)
+        over = (abs(value - null) - usual) / max(factor * deviation[i], 1e-300)
+        odds.append(float(log_ndtr(over)))
+    return max(odds, default=0.0)

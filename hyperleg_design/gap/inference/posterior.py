@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.inference.cause_prior import beyond_usual
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Name
 from hyperleg_design.gap.inference.unlisted import unlisted
 
@@ -36,7 +37,7 @@ class Posterior:
     hypothesis: Hypothesis
     """The most probable."""
     order: tuple[int, ...]
-    """Its candidates that are no `standing` ones, the one that explains most first."""
+    """Its candidates that are faults and no `standing` ones, the one that explains most first."""
     standing: tuple[int, ...]
     """Its candidates that act in the references, too, likewise: what the model lacks."""
     probability: dict[Name, float]
@@ -80,6 +81,8 @@ def posterior_of(
     closed = size.closed
     remainder = float(np.clip(1 - closed, 0.0, 1.0)) if acting else 0.0
     ranked = np.argsort(-np.array(_effects(best)), kind="stable").tolist()
+    faults = _faults(best, evidence, rules)
+    ranked = [place for place in ranked if best.candidates[place] in faults]
     order = tuple(place for place in ranked if not best.candidates[place].standing)
     standing = tuple(place for place in ranked if best.candidates[place].standing)
     rivals = _rivals(result, best)
@@ -102,6 +105,20 @@ def _stated(candidate: Candidate) -> list[Name]:
     """What a candidate states: itself, and, of an effect at all places, that it acts at each."""
     own = ((cause.effect, cause.location, cause.standing) for cause in candidate.causes)
     return [candidate.name, *own]
+
+
+def _faults(
+    hypothesis: Hypothesis, evidence: Evidence, rules: InferenceRules
+) -> tuple[Candidate, ...]:
+    """Candidates that are not, more probably than not, a usual calibration error alone."""
+    likely = float(np.log(rules.posterior.likely))
+    return tuple(
+        dict.fromkeys(
+            candidate
+            for place, candidate in expanded(hypothesis.candidates)
+            if beyond_usual(hypothesis, place, evidence, rules) > likely
+        )
+    )
 
 
 def _effects(hypothesis: Hypothesis) -> list[float]:

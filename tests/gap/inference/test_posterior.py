@@ -38,9 +38,10 @@ def quiet(noise, rules):
     return 0.0, -9.0
 
 
-def answer(*hypotheses, closed=1.0):
+def answer(*hypotheses, closed=1.0, usual=None):
     ranked = tuple(sorted(hypotheses, key=lambda one: -one.score))
-    evidence = SimpleNamespace(channels=(SimpleNamespace(referenced=False, noisy=quiet),))
+    channels = (SimpleNamespace(referenced=False, noisy=quiet),)
+    evidence = SimpleNamespace(channels=channels, references=(), usual=usual or {})
     return posterior_of(Result(ranked, ()), evidence, SimpleNamespace(closed=closed), RULES)
 
 
@@ -112,3 +113,13 @@ def test_what_is_beside_something_unlisted_must_close_the_main_part(closed, verd
 def test_without_anything_unlisted_any_part_is_explained():
     found = answer(hypothesis(0.0), hypothesis(30.0, ("a", "x")), closed=0.3)
     assert (found.verdict, found.remainder) == ("explained", 0.0)
+
+
+def test_what_is_more_probably_a_usual_error_than_not_is_no_fault():
+    best = hypothesis(30.0, ("a", "x"), ("b", "y"))  # sizes 2 and 1, deviations 1
+    found = answer(hypothesis(0.0), best, usual={("b", "y", 0): 0.5})  # 1.5 is usual
+    assert [found.hypothesis.candidates[i].name for i in found.order] == [("a", "x", False)]
+    usual = {("a", "x", 0): 1.0, ("b", "y", 0): 0.5}
+    assert answer(hypothesis(0.0), best, usual=usual).verdict == "none"
+    usual = {("a", "x", 0): 0.6, ("b", "y", 0): 0.3}
+    assert len(answer(hypothesis(0.0), best, usual=usual).order) == 2
