@@ -71,8 +71,8 @@ def factor(
     """
     subject = samples.filtered_logs[0].signals.subject
     scaling = EFFECTS[effect]
-    if values is not None and (found := shrinking(samples, scaling, location, usual, values)):
-        return found
+    if values is not None and (noise := shrinking(samples, scaling, location, usual, values)):
+        return noise
     if scaling.scales == "motor":
         motor = subject.motors.index(location)
         joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))

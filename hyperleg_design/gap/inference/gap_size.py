@@ -69,7 +69,7 @@ class GapSize:
     @cached_property
     def counts(self) -> np.ndarray:
         """Channels that count, all in the unit of the largest `(channels,)` of bool."""
-        units = [RESIDUALS[one.residual][1] for one in self.evidence.channels]
+        units = [RESIDUALS[channel.residual][1] for channel in self.evidence.channels]
         largest = int(np.argmax(self.excess))
         same = np.array([unit == units[largest] for unit in units])
         return same & (self.excess >= COUNTS * self.excess[largest])
@@ -139,22 +139,35 @@ class GapSize:
         return np.minimum((before - after) / np.maximum(before - lowest, 1e-12), 1.0)
 
     def squares(self, values: np.ndarray) -> np.ndarray:
-        """Mean square of values `(S,)` of each channel, over its noise `(channels,)`."""
+        """Mean square in each channel, over its noise `(channels,)`.
+
+        Args:
+            values: of all samples `(S,)`, in the residuals' units.
+        """
         return mean_squares(self.evidence, values)
 
     def total(self, squares: np.ndarray) -> float:
-        """Mean over the channels that count."""
+        """Mean over the channels that count.
+
+        Args:
+            squares: of all channels `(channels,)`.
+        """
         return float(np.mean(squares[self.counts]))
 
 
 def mean_squares(evidence: Evidence, values: np.ndarray) -> np.ndarray:
-    """Mean square of values `(S,)` under test over the expected noise, by channel `(channels,)`."""
+    """Mean square under test over the expected noise, by channel `(channels,)`.
+
+    Args:
+        evidence: channels.
+        values: of all samples `(S,)`, in the residuals' units.
+    """
     square = (values * evidence.weight) ** 2
     return np.array(
         [
-            float(square[one.under_test].sum())
-            / max(float(evidence.samples.share[one.under_test].sum()), 1e-300)
-            for one in evidence.channels
+            float(square[channel.under_test].sum())
+            / max(float(evidence.samples.share[channel.under_test].sum()), 1e-300)
+            for channel in evidence.channels
         ]
     )
 
@@ -165,12 +178,12 @@ def _lowest_squares(
     """Mean square that no cause can go below, as of `mean_squares`: what is left, or where that is
     an unlisted effect's noise, a healthy robot's.
     """
-    found = mean_squares(evidence, held.noise)
+    squares = mean_squares(evidence, held.noise)
     for place, (channel, scales) in enumerate(
         zip(evidence.channels, hypothesis.scales, strict=True)
     ):
         if makes_noise(channel, scales, rules):
             numbers = channel.numbers[channel.bands_tested]
             usual = channel.usual_noise(scales.noise, rules)
-            found[place] = min(found[place], float(numbers @ usual / numbers.sum()))
-    return found
+            squares[place] = min(squares[place], float(numbers @ usual / numbers.sum()))
+    return squares

@@ -70,8 +70,8 @@ class Shrinking:
         return float(self.number @ first), max(float(self.number @ second), 0.0)
 
     def _left(self, phi: float) -> np.ndarray:
-        kept = 1 - 2 * self.slope * phi + self.square * phi**2
-        return np.maximum(self.part * kept + 1 - self.part, LEAST**2)
+        shrunk = 1 - 2 * self.slope * phi + self.square * phi**2
+        return np.maximum(self.part * shrunk + 1 - self.part, LEAST**2)
 
 
 def shrinking(
@@ -114,12 +114,12 @@ def _of_acceleration(samples: Samples, motor: int, joint: int) -> tuple[np.ndarr
     frequency, as far as it is in the load of a motor's belt `(S,)` each.
     """
     part, rate = np.zeros(len(samples.row)), np.zeros(len(samples.row))
-    for one, places in zip(samples.filtered_logs, samples.where, strict=True):
-        for place, row in enumerate(one.rows):
+    for log, places in zip(samples.filtered_logs, samples.where, strict=True):
+        for place, row in enumerate(log.rows):
             if (row.residual_name, row.column) == ("motion", joint):
-                feigned, squared = noise_model.of_acceleration(one, place)
+                feigned, squared = noise_model.of_acceleration(log, place)
                 part[places[place]] = feigned
-                rate[places[place]] = squared * _carried(one.signals, motor, joint)
+                rate[places[place]] = squared * _carried(log.signals, motor, joint)
     return np.minimum(part / samples.floor**2, 1.0), rate
 
 
@@ -157,32 +157,33 @@ def _of_torque(
     def taken(signals: Signals) -> dict[str, np.ndarray]:
         shaken, noise = _shaken(signals, motor)
         calm, moved = (
-            effect.trace(one, location, values[None])["motion"][0] for one in (signals, shaken)
+            effect.trace(log, location, values[None])["motion"][0] for log in (signals, shaken)
         )
-        found = np.zeros((2, *calm.shape))
-        found[0, :, joint] = (moved - calm)[:, joint]
-        found[1, :, joint] = noise * signals.subject.joint_from_motor[joint, motor]
-        return {"motion": found}
+        both = np.zeros((2, *calm.shape))
+        both[0, :, joint] = (moved - calm)[:, joint]
+        both[1, :, joint] = noise * signals.subject.joint_from_motor[joint, motor]
+        return {"motion": both}
 
     columns = samples.columns(taken, 2)
     if columns is None:
         return np.zeros(len(own)), np.zeros(len(own))
     trace, noise = columns[:, own]
     group = samples.group[own]
-    both, squares, whole = (
-        np.bincount(group, samples.share[own] * one) for one in (trace * noise, trace**2, noise**2)
+    shared, squares, whole = (
+        np.bincount(group, samples.share[own] * product)
+        for product in (trace * noise, trace**2, noise**2)
     )
     whole = np.maximum(whole, 1e-300)
-    return (both / whole)[group], (squares / whole)[group]
+    return (shared / whole)[group], (squares / whole)[group]
 
 
 def _shaken(signals: Signals, motor: int) -> tuple[Signals, np.ndarray]:
     """A log with white noise in a motor's torque, and that noise `(t,)` [Nm]."""
-    kept = _SHAKEN.setdefault(signals, {})
-    if motor not in kept:
+    known = _SHAKEN.setdefault(signals, {})
+    if motor not in known:
         rng = np.random.default_rng([SEED, motor])
         noise = SHAKEN * motor_strength(signals.subject, motor) * rng.normal(size=len(signals.time))
         believed = signals.believed.copy()
         believed[:, motor] += noise
-        kept[motor] = replace(signals, believed=believed), noise
-    return kept[motor]
+        known[motor] = replace(signals, believed=believed), noise
+    return known[motor]

@@ -17,6 +17,11 @@ if TYPE_CHECKING:
 def unlisted(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
     """Whether a channel's discrepancy or noise is rather an unlisted effect's than a healthy
     robot's.
+
+    Args:
+        channel: of the evidence.
+        scales: that were fitted to it.
+        rules: of the inference.
     """
     if makes_noise(channel, scales, rules):
         return True
@@ -31,6 +36,12 @@ def unlisted(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
 
 
 def makes_noise(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
-    """Whether a channel's noise is rather an unlisted effect's than a healthy robot's."""
+    """Whether a channel's noise is rather an unlisted effect's than a healthy robot's.
+
+    Args:
+        channel: of the evidence.
+        scales: that were fitted to it.
+        rules: of the inference.
+    """
     healthy, other = channel.noisy(scales.noise, rules)
     return other > healthy

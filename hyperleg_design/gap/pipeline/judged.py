@@ -213,7 +213,7 @@ class _Answer:
     def gap(self, naming: bool) -> Shrinkage:
         """Before, after and floor over the channels that count, in their unit."""
         size = self.size
-        before, after = (float(np.sqrt(size.total(one))) for one in (size.before, size.after))
+        before, after = (float(np.sqrt(size.total(square))) for square in (size.before, size.after))
         closed, low, high = 0.0, 0.0, 0.0
         if naming and size.closed:
             closed = size.closed

@@ -80,16 +80,17 @@ class Run:
 
 def _picks(rng: np.random.Generator, clock: np.ndarray) -> np.ndarray:
     """From point to point with least jerk, and rests between."""
-    found = np.tile(MIDDLE, (len(clock), 1))
+    targets = np.tile(MIDDLE, (len(clock), 1))
     begin, here = 0.0, MIDDLE.copy()
     while begin < clock[-1]:
         there = MIDDLE + SWING * rng.uniform(-1, 1, 4)
         last, rest = rng.uniform(0.6, 1.3), rng.uniform(0.1, 0.5)
         s = np.clip((clock - begin) / last, 0, 1)
         way = 10 * s**3 - 15 * s**4 + 6 * s**5
-        found = np.where((clock >= begin)[:, None], here + way[:, None] * (there - here), found)
+        moved = here + way[:, None] * (there - here)
+        targets = np.where((clock >= begin)[:, None], moved, targets)
         begin, here = begin + last + rest, there
-    return found
+    return targets
 
 
 def _waves(rng: np.random.Generator, clock: np.ndarray) -> np.ndarray:
@@ -169,14 +170,14 @@ def built(build: int) -> tuple[mujoco.MjModel, np.ndarray]:
     Returns:
         Model and zeros.
     """
-    model, own = mujoco.MjModel.from_xml_string(XML), np.random.default_rng(build)
-    share = 1 + MASSES * own.normal(size=model.nbody)
+    model, rng = mujoco.MjModel.from_xml_string(XML), np.random.default_rng(build)
+    share = 1 + MASSES * rng.normal(size=model.nbody)
     model.body_mass[:] *= share
     model.body_inertia[:] *= share[:, None]
-    model.body_ipos[1:] += CENTRES * own.normal(size=(model.nbody - 1, 3))
-    model.dof_frictionloss[:] *= 1 + FRICTION * own.normal(size=model.nv)
-    model.dof_damping[:] *= 1 + DAMPERS * own.normal(size=model.nv)
-    return model, ZEROS * own.normal(size=model.nv)
+    model.body_ipos[1:] += CENTRES * rng.normal(size=(model.nbody - 1, 3))
+    model.dof_frictionloss[:] *= 1 + FRICTION * rng.normal(size=model.nv)
+    model.dof_damping[:] *= 1 + DAMPERS * rng.normal(size=model.nv)
+    return model, ZEROS * rng.normal(size=model.nv)
 
 
 def simulate(wrongs: Sequence[Wrong], run: Run) -> Recording:
@@ -285,7 +286,7 @@ def _load(model: mujoco.MjModel, joint: int, mass: float) -> None:
 
 
 def _logged(
-    table: np.ndarray, limit: np.ndarray, noise: np.random.Generator, name: str
+    table: np.ndarray, limit: np.ndarray, noise: np.random.Generator, label: str
 ) -> Recording:
     """The log with the noise of its torque sensors."""
     parts = np.split(table[:, 1:], 5, axis=1)
@@ -297,8 +298,8 @@ def _logged(
         parts,
         strict=True,
     ):
-        signals |= {f"{kind}/{one}": values[:, i] for i, one in enumerate(names)}
+        signals |= {f"{kind}/{name}": values[:, i] for i, name in enumerate(names)}
     gains = {
         joint: [float(k), float(d)] for joint, k, d in zip(JOINTS, STIFFNESS, DAMPING, strict=True)
     }
-    return Recording(name, table[:, 0], signals, {"gains": gains})
+    return Recording(label, table[:, 0], signals, {"gains": gains})

@@ -152,25 +152,30 @@ def material(data: Path, plan: CranePlan, duration: float = 12.0) -> tuple[Mater
 
 def _faults(plan: CranePlan) -> tuple[Fault, ...]:
     """What is wrong in the words of the catalogue."""
-    own, _ = crane.built(plan.build)
-    told = own if plan.references else mujoco.MjModel.from_xml_string(crane.XML)
-    found = []
+    model, _ = crane.built(plan.build)
+    compared = model if plan.references else mujoco.MjModel.from_xml_string(crane.XML)
+    faults = []
     for wrong in plan.wrongs:
         what, j, size = wrong.what, wrong.place, wrong.size
         if what not in EFFECTS:
-            found.append(Fault(what, (), listed=False))
+            faults.append(Fault(what, (), listed=False))
             continue
         places: tuple[str, ...] = (JOINTS[j], MOTORS[j])
         if what == "load":
-            body = own.body(BODIES[j]).id
-            places, size = (BODIES[j], JOINTS[j]), size + own.body_mass[body] - told.body_mass[body]
+            body = model.body(BODIES[j]).id
+            places, size = (
+                (BODIES[j], JOINTS[j]),
+                size + model.body_mass[body] - compared.body_mass[body],
+            )
         if what == "late":
             places = ("robot",)
         values = {SIZES[what]: float(size)} if what in SIZES else {}
         if what == "rough":
-            values = {"torque": float(size * own.dof_frictionloss[j] - told.dof_frictionloss[j])}
+            values = {
+                "torque": float(size * model.dof_frictionloss[j] - compared.dof_frictionloss[j])
+            }
         if what == "thick":
-            values = {"damping": float(size * own.dof_damping[j] - told.dof_damping[j])}
+            values = {"damping": float(size * model.dof_damping[j] - compared.dof_damping[j])}
         alike = tuple((effect, places) for effect in ALIKE.get(what, ()))
-        found.append(Fault(EFFECTS[what], places, values, alike))
-    return tuple(found)
+        faults.append(Fault(EFFECTS[what], places, values, alike))
+    return tuple(faults)
