@@ -167,8 +167,7 @@ class Effect(ABC):
         return np.array([p.typical for p in self.parameters])
 
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
-        """Values `(parameters,)` at which it can be seen: `size` times the usual distance from the
-        nulls, inside the bounds.
+        """Values at which it can be seen: at `size` times the usual distance, inside the bounds.
 
         Args:
             location: one of `locations`.
@@ -192,8 +191,7 @@ class Effect(ABC):
         return values
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Least and largest values that are possible at a place of a robot `(2, parameters)`; never
-        wider than the parameters' own.
+        """Least and largest values at a place of a robot, never wider than the parameters' own.
 
         Args:
             location: one of `locations`.
@@ -259,6 +257,10 @@ class Effect(ABC):
         """
         return {}
 
+    def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """As `nuisance_spreads`, of places without such a parameter, too: up to three are usual."""
+        return self.nuisance_spreads(subject, step)
+
     def nuisance_trace(
         self, signals: Signals, location: str, parameter: int, spread: float
     ) -> dict[str, np.ndarray] | None:
@@ -293,8 +295,7 @@ class Effect(ABC):
         return False
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Values from which a search for the best fit to a log is worth while `(s, parameters)`,
-        inside the bounds.
+        """Values from which a search for the best fit to a log is worth while.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -339,8 +340,7 @@ class Effect(ABC):
     def derived(
         self, location: str, values: np.ndarray, subject: Subject
     ) -> dict[str, tuple[float, str]]:
-        """What people would rather read: quantities that follow from values `(parameters,)`, each
-        with its unit.
+        """What people would rather read: quantities that follow from values.
 
         Args:
             location: one of `locations`.

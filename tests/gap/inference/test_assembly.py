@@ -22,3 +22,16 @@ def test_a_channel_that_is_mostly_noise_is_fitted_too(loud):
     assert drive.columns == 1
     (scales, *_) = HypothesisFit(loud, InferenceRules(), {}, {}).nothing.scales
     assert np.isfinite(scales.noise).all()
+
+
+def test_usual_errors_are_known_of_places_that_have_no_nuisance_parameter(robot_files):
+    evidence = diagnosed.evidence(robot_files["coupled"], diagnosed.run("healthy", 0))
+    of_all = evidence.usual["command_delay", "robot", 0]
+    assert evidence.usual["command_delay", "m_front", 0] == of_all > 0
+    loads = {
+        place: size
+        for (effect, place, i), size in evidence.usual.items()
+        if (effect, i) == ("payload", 0)
+    }
+    assert loads
+    assert all(evidence.usual["link_mass", link, 0] == size for link, size in loads.items() if size)

@@ -76,6 +76,19 @@ class CommandDelay(Effect):
         """
         return {ROBOT: np.append(lateness(step), np.zeros(len(self.parameters) - 1))}
 
+    def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """Of one drive as of all.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        of_all = self.nuisance_spreads(subject, step)[ROBOT]
+        return dict.fromkeys(self.locations(subject), of_all)
+
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """The robot, and where it has several motors, each of them.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -12,6 +13,7 @@ from hyperleg_design.gap.effects.links.inertial import (
     fitted,
     least_mass,
 )
+from hyperleg_design.gap.effects.links.link_mass import DRAWN
 from hyperleg_design.gap.effects.parameter import Parameter
 
 if TYPE_CHECKING:
@@ -98,6 +100,22 @@ class Payload(InertialEffect):
             x * x + y * y + own_inertia,
         )
         return mass[:, None] * np.stack([np.ones_like(x), x, y, z, *inertia], -1)
+
+    def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """As that of a link's own mass: what is no heavier may be part of it.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            Standard deviations from the nulls by location `(parameters,)`.
+        """
+        tree, size = subject.tree, np.eye(len(self.parameters))[0]
+        return {
+            link: DRAWN * tree.link_inertial[tree.link(link), 0] * size
+            for link in self.locations(subject)
+        }
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """A share of the mass that moves with the link.

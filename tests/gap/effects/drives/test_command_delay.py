@@ -86,3 +86,12 @@ def test_targets_and_commands_are_late_by_their_own():
     given = np.array([live.target(np.full((2, 1), float(step)), None)[:, 0] for step in range(6)])
     np.testing.assert_allclose(given[3:], np.arange(3, 6)[:, None] - np.array([2.0, 0.0]))
     np.testing.assert_array_equal(live.command(np.full((2, 1), 7.0), None), 7.0)
+
+
+def test_one_drive_is_usually_as_late_as_all(leg):
+    subject = leg(duration=1.5).subject
+    (of_all,) = DELAY.nuisance_spreads(subject, 0.005).values()
+    assert of_all[0] > 0
+    for errors in DELAY.usual_errors(subject, 0.005).values():
+        np.testing.assert_array_equal(errors, of_all)
+    assert set(DELAY.usual_errors(subject, 0.005)) == set(DELAY.locations(subject))

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import effect
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 @pytest.mark.parametrize(
@@ -17,3 +18,14 @@ from hyperleg_design.gap.effects import effect
 def test_loads_hang_at_the_ends_and_weigh_something(mass, declared, beyond, odds):
     values = np.array([mass, 0.0, 0.0, 0.0, 0.0])
     assert effect("payload").size_odds(values, np.ones(5), declared, beyond) == odds
+
+
+def test_a_load_is_usual_up_to_the_error_of_the_mass_of_its_link(robot_files):
+    subject = load_subject(str(robot_files["coupled"]), [])
+    errors = effect("payload").usual_errors(subject, 0.005)
+    masses = effect("link_mass").nuisance_spreads(subject, 0.005)
+    assert set(masses) <= set(errors)
+    for link, spread in masses.items():
+        assert errors[link][0] == pytest.approx(spread[0])
+        assert not errors[link][1:].any()
+    assert effect("payload").nuisance_spreads(subject, 0.005) == {}
