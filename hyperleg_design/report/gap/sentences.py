@@ -207,8 +207,10 @@ def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
             low, high = (100 * float(v) for v in gap["closed_interval"])
             much = "All" if closed >= NOTHING_LEFT else f"{100 * closed:.0f} %"
             wide = f" (95 % interval {low:.0f} to {high:.0f} %)" if high - low >= 1 else ""
-            what = "what effects can explain" if remainder else "the gap beyond the noise floor"
-            texts.append(f"{much} of {what} is gone on data that the fit has not seen{wide}.")
+            texts.append(
+                f"{much} of the gap beyond the noise floor is gone on data that the fit has not "
+                f"seen{wide}."
+            )
     if remainder:
         texts.append(f"{100 * float(remainder):.0f} % of the gap is left that no effect explains.")
     if diagnosis["verdict"] == "unknown":
