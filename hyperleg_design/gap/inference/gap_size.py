@@ -45,7 +45,7 @@ class GapSize:
     def of(
         cls, evidence: Evidence, hypothesis: Hypothesis, held: Prediction, rules: InferenceRules
     ) -> GapSize:
-        """Measure it.
+        """Measure the gap by a hypothesis.
 
         Args:
             evidence: channels.

@@ -55,7 +55,7 @@ class Posterior:
 def posterior_of(
     result: Result, evidence: Evidence, size: GapSize, rules: InferenceRules
 ) -> Posterior:
-    """The answer.
+    """Judge all hypotheses together.
 
     Args:
         result: of the search.
