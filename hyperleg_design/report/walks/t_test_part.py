@@ -11,15 +11,12 @@ from hyperleg_design.report.drawer import Drawer, Part
 from hyperleg_design.report.pictures import gif, motion
 from hyperleg_design.report.style import save
 from hyperleg_design.report.walks.beside_paper import (
-    beside,
     differences,
-    rows_beside_paper,
-    toe_sentence,
 )
 from hyperleg_design.report.walks.evaluated import T_TEST, Evaluated
+from hyperleg_design.report.walks.paper_tables import paper_tables
 from hyperleg_design.report.walks.t_test_figures import t_test_figure
 from hyperleg_design.report.walks.time_table import time_table
-from hyperleg_design.report.walks.versus_figures import change_figure
 
 
 def table_four(evaluated: Evaluated, draw: Drawer) -> Part:
@@ -37,25 +34,7 @@ def table_four(evaluated: Evaluated, draw: Drawer) -> Part:
         "is from the nearest point of the course; from the leg being run it stands in the table of "
         "all arms."
     ]
-    tables = {
-        name: rows
-        for name, rows in rows_beside_paper(evaluated).items()
-        if name.startswith("Table IV")
-    }
-    if not tables:
-        content.append(
-            "Table IV cannot be reproduced yet: no group has both of the paper's robots."
-        )
-    for name, rows in tables.items():
-        content += [*beside(rows, name), toe_sentence(rows)]
-    if tables:
-        content.append(
-            draw(
-                "table_4",
-                "Change that the toe makes: ours beside the paper's.",
-                lambda p: save(change_figure(tables), p),
-            )
-        )
+    content += paper_tables(evaluated, draw, "Table IV")
     for group in evaluated.groups(T_TEST):
         runs = {d: evaluated.of(group, d) for d in evaluated.designs(group)}
         shown = next(

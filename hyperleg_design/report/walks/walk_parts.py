@@ -20,16 +20,13 @@ from hyperleg_design.report.page import Cell, Table
 from hyperleg_design.report.pictures import gif, motion, picture, strip
 from hyperleg_design.report.style import later, save
 from hyperleg_design.report.walks.beside_paper import (
-    beside,
     differences,
     interval,
-    rows_beside_paper,
-    toe_sentence,
     verdict,
 )
 from hyperleg_design.report.walks.evaluated import WALK, Evaluated
+from hyperleg_design.report.walks.paper_tables import paper_tables
 from hyperleg_design.report.walks.robustness_figure import robustness_figure
-from hyperleg_design.report.walks.versus_figures import change_figure
 from hyperleg_design.report.walks.walk_figures import cycle_power_figure, impact_band_figure
 from hyperleg_design.robot.load import walker
 
@@ -135,23 +132,7 @@ def table_three(evaluated: Evaluated, draw: Drawer) -> Part:
         "The paper's numbers beside ours: twenty metres at 1.33 m/s. Ablation: toe and its motor removed at equal mass (toe_removed_matched), which fits the ratios of the table best. "
         "A printed number agrees where it lies in our interval."
     ]
-    tables = {
-        name: rows
-        for name, rows in rows_beside_paper(evaluated).items()
-        if name.startswith("Table III")
-    }
-    if not tables:
-        content.append("Cannot be reproduced yet: no group has both of the paper's robots.")
-    for name, rows in tables.items():
-        content += [*beside(rows, name), toe_sentence(rows)]
-    if tables:
-        content.append(
-            draw(
-                "table_3",
-                "Change that the toe makes: ours beside the paper's.",
-                lambda p: save(change_figure(tables), p),
-            )
-        )
+    content += paper_tables(evaluated, draw, "Table III")
     content += [
         differences(evaluated, group, WALK)
         for group in evaluated.groups(WALK)
