@@ -190,6 +190,18 @@ def quantised(log: Log, size: float) -> Log:
     return log.changed(signals=signals)
 
 
+def noisy(log: Log, seed: int, torque: float = 0.02) -> Log:
+    """Rounded positions without velocities, and white noise in torques [Nm]."""
+    rng = np.random.default_rng(seed)
+    rounded = quantised(log, 5e-4)
+    return rounded.changed(
+        signals={
+            c: v + rng.normal(0, torque, len(v)) if c.startswith("motor_torque/") else v
+            for c, v in rounded.signals.items()
+        }
+    )
+
+
 def biped_run(height: float = 0.0, duration: float = 0.7, **metadata) -> Log:
     """Our biped bending its knees, standing or thrown up, in plain MuJoCo at half a millisecond;
     all a log can hold.

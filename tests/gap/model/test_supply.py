@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 import robots
+from diagnosed import conditioned
 
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.logs.log import Log
@@ -9,7 +10,6 @@ from hyperleg_design.gap.model.supply import over_nominal
 from hyperleg_design.gap.pipeline.diagnose import diagnose_signals
 from hyperleg_design.gap.playback.replay import replay
 from hyperleg_design.gap.playback.windows import short_windows
-from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 
 NOMINAL, CONSTANT, RESISTANCE, GAIN = 7.4, 0.3, 3.4, 3.0
@@ -79,11 +79,6 @@ def servo(tmp_path_factory):
     path = tmp_path_factory.mktemp("servo") / "servo.xml"
     path.write_text(SERVO)
     return path
-
-
-def conditioned(servo, *logs):
-    subject = load_subject(servo, logs)
-    return [condition(log, subject) for log in logs]
 
 
 def test_a_drive_that_follows_its_battery_leaves_nothing(servo):

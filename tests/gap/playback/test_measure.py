@@ -1,27 +1,10 @@
 import numpy as np
 import pytest
 import robots
+from diagnosed import conditioned
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.playback.measure import measure
-from hyperleg_design.gap.signals.conditioning import condition
-from hyperleg_design.gap.signals.loading import load_subject
-
-
-def noisy(log, seed, torque=0.02):
-    rng = np.random.default_rng(seed)
-    rounded = robots.quantised(log, 5e-4)
-    return rounded.changed(
-        signals={
-            c: v + rng.normal(0, torque, len(v)) if c.startswith("motor_torque/") else v
-            for c, v in rounded.signals.items()
-        }
-    )
-
-
-def conditioned(robot_files, name, *logs):
-    subject = load_subject(robot_files[name], logs)
-    return [condition(log, subject) for log in logs]
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +18,7 @@ def stiction():
 
 def test_a_faultless_log_has_no_excess_over_its_references(robot_files, runs):
     one, two = conditioned(
-        robot_files, "coupled", noisy(runs["coupled"], 0), noisy(runs["coupled"], 1)
+        robot_files["coupled"], robots.noisy(runs["coupled"], 0), robots.noisy(runs["coupled"], 1)
     )
     gap = measure([one], [two])
     assert gap.floor_from == "reference"
@@ -45,7 +28,7 @@ def test_a_faultless_log_has_no_excess_over_its_references(robot_files, runs):
 
 def test_the_gap_lies_where_the_fault_is(robot_files, runs, stiction):
     test, reference = conditioned(
-        robot_files, "coupled", noisy(stiction, 0), noisy(runs["coupled"], 1)
+        robot_files["coupled"], robots.noisy(stiction, 0), robots.noisy(runs["coupled"], 1)
     )
     gap = measure([test], [reference])
     rows = {r.location: r for r in gap.select("torque", "joint")}
@@ -67,7 +50,7 @@ def test_the_gap_lies_where_the_fault_is(robot_files, runs, stiction):
 
 
 def test_shares_of_all_places_add_up(robot_files, runs, stiction):
-    (test,) = conditioned(robot_files, "coupled", noisy(stiction, 0))
+    (test,) = conditioned(robot_files["coupled"], robots.noisy(stiction, 0))
     gap = measure([test])
     assert gap.floor_from == "split"
     for signal, kind in (("torque", "joint"), ("torque", "motor"), ("position", "joint")):
@@ -75,7 +58,7 @@ def test_shares_of_all_places_add_up(robot_files, runs, stiction):
 
 
 def test_table_and_bands(robot_files, runs, stiction):
-    (test,) = conditioned(robot_files, "coupled", noisy(stiction, 0))
+    (test,) = conditioned(robot_files["coupled"], robots.noisy(stiction, 0))
     gap = measure([test], predict=False)
     table = gap.table()
     assert len({len(column) for column in table.values()}) == 1
