@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import signal
 import subprocess
 import time
@@ -44,7 +45,8 @@ def run_side_by_side(
             for pair in [pair for pair in running if pair[1].poll() is not None]:
                 running.remove(pair)
                 ended(pair[0], pair[1].returncode)
-            for job in [job for job in waiting if ready(job)][: workers - len(running)]:
+            free = workers - len(running)
+            for job in list(itertools.islice(filter(ready, waiting), free)):
                 waiting.remove(job)
                 running.append((job, start(job)))
             watch()

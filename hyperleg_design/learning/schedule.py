@@ -41,6 +41,13 @@ class Schedule:
         return sum(self.preset.iterations(stage) for stage in self.stages)
 
     @property
+    def is_late(self) -> bool:
+        """Whether the policy of now is one of the last to be kept besides the very last."""
+        apart = max(1, round(self.preset.late_apart / self.preset.steps_per_iteration))
+        left = self.total - self.iteration
+        return left > 0 and left % apart == 0 and left // apart < int(self.preset.late)
+
+    @property
     def place(self) -> tuple[int, int]:
         """Index of the present stage, and iterations done in it; the last one's end when all is
         done.

@@ -137,7 +137,7 @@ class Training:
                     self._try()
                     measures["trial"] = self.latest_trial
                 log_measures(self.folder, writer, measures)
-                if self._is_late():
+                if self.schedule.is_late:
                     self._export(f"late_{schedule.iteration:06d}.onnx")
                 if schedule.iteration % int(preset.checkpoint_every) == 0:
                     self.save()
@@ -352,12 +352,6 @@ class Training:
             seed=TRIAL_SEED,
             alterations=self.alterations,
         )
-
-    def _is_late(self) -> bool:
-        """Whether the policy is one of the last to be kept besides the very last."""
-        apart = max(1, round(self.preset.late_apart / self.preset.steps_per_iteration))
-        left = self.schedule.total - self.schedule.iteration
-        return left > 0 and left % apart == 0 and left // apart < int(self.preset.late)
 
     def _export(self, name: str) -> None:
         environment = self.environment

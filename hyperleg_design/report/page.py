@@ -76,7 +76,7 @@ class Heading:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of a page."""
+    """A part of a page under a heading of its own."""
 
     title: str
     content: Sequence[Any] = ()

@@ -27,9 +27,9 @@ from hyperleg_design.robot import transmission
 from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.described_file import FileJoint, FileRobot, read_robot
 from hyperleg_design.robot.models import leg_reflected_inertia
-from hyperleg_design.robot.motor_paths import with_motor_paths
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.entries import check_keys
+from hyperleg_design.robot.parameters.motor_paths import with_motor_paths
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_load import tree_design_from_mapping
 

@@ -20,7 +20,7 @@ from hyperleg_design.robot.design import (
     load_design,
     parse_overrides,
 )
-from hyperleg_design.robot.motor_paths import with_motor_paths
+from hyperleg_design.robot.parameters.motor_paths import with_motor_paths
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_load import FAMILY, tree_design_from_mapping
 

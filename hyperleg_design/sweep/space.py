@@ -29,10 +29,10 @@ from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.design import SPRING, Design
 from hyperleg_design.robot.load import load_robot, walker
-from hyperleg_design.robot.motor_paths import path_from_here
 from hyperleg_design.robot.names import LAYOUTS, PASSIVE
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.entries import check_keys
+from hyperleg_design.robot.parameters.motor_paths import path_from_here
 from hyperleg_design.sweep import measures, registry
 from hyperleg_design.sweep.axis import Axis, read_axis
 from hyperleg_design.sweep.definition import AS_DESCRIBED, Map, Sweep

@@ -102,10 +102,10 @@ def shrinking(
     if inertia is not None:
         slope = rate[own] * inertia * usual[0]
         return Shrinking(0, slope, slope**2, part[own], samples.share[own], row)
-    slope, square = _of_torque(samples, effect, location, values, joint, own)
     size = float(values[0] / usual[0])
     if size <= 0:
         return None
+    slope, square = _of_torque(samples, effect, location, values, joint, own)
     return Shrinking(0, slope / size, square / size**2, 1 - part[own], samples.share[own], row)
 
 

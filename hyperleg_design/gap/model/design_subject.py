@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
 from hyperleg_design.gap.model import robot_file
 from hyperleg_design.gap.model.assembling import add_rotors, assembled
 from hyperleg_design.gap.model.feet import pads_of
@@ -49,13 +48,7 @@ def of_design(design: RobotDesign, path: Path, base: str, known: set[str] | None
     drawn = build_tree(design)
     base = base or ("floating" if drawn.floating else "fixed")
     every = [j.name for j in drawn.moving]
-    if known is not None and not known & set(every):
-        raise InputError(
-            design.name,
-            "joints",
-            sorted(known)[:8],
-            f"are joints of another robot; its own are {', '.join(every)}",
-        )
+    kept = robot_file.kept_joints(every, known, design.name)
     spec = _spec(design, base)
     robot_file.strip_drives(spec)
     for group in (spec.sensors, spec.keys):
@@ -64,7 +57,6 @@ def of_design(design: RobotDesign, path: Path, base: str, known: set[str] | None
     for joint in spec.joints:
         joint.frictionloss = 0.0
     robot_file.set_base(spec, base, path)
-    kept = [name for name in every if known is None or name in known]
     held = robot_file.lock(spec, kept)
     moving = [joint for joint in drawn.moving if joint.name in kept]
     limbs, names = design.copies, transmission.motor_names(design)

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
 from hyperleg_design.gap.model import file_drives, file_joints, robot_file
 from hyperleg_design.gap.model.assembling import add_rotors, add_tendon, assembled
 from hyperleg_design.gap.model.feet import feet_of
@@ -42,14 +41,7 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
     base = robot_file.set_base(spec, base, path)
     notes = robot_file.strip_scene(spec, path, contact=base == "floating")
     every = [j.name for j in spec.joints]
-    if known is not None and not known & set(every):
-        raise InputError(
-            path.name,
-            "joints",
-            sorted(known)[:8],
-            f"are joints of another robot; its own are {', '.join(every)}",
-        )
-    kept = every if known is None else known
+    kept = robot_file.kept_joints(every, known, path.name)
     whole = robot_file.compiled(spec, path)
     drives = file_drives.read_drives(whole, kept)
     indices = [j for j in file_joints.single_joints(whole) if whole.joint(j).name in kept]
@@ -57,7 +49,7 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
         spec, fixed_tendons(whole, indices), [whole.joint(j).name for j in indices]
     )
     robot_file.strip_drives(spec)
-    held = robot_file.lock(spec, every if known is None else known)
+    held = robot_file.lock(spec, kept)
     if base == "floating":
         robot_file.add_floor(spec)
     first = robot_file.compiled(spec, path)

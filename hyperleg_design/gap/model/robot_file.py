@@ -7,7 +7,7 @@ themselves.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -216,6 +216,31 @@ def strip_drives(spec: Any) -> None:
     for group in (spec.actuators, spec.tendons):
         for item in list(group):
             spec.delete(item)
+
+
+def kept_joints(every: Sequence[str], known: Collection[str] | None, where: str) -> list[str]:
+    """Choose the joints of a robot that stay free.
+
+    Args:
+        every: names of all its joints.
+        known: joints that logs know; None for all.
+        where: name of the robot, for the error.
+
+    Returns:
+        Those that logs know, in the robot's order.
+
+    Raises:
+        InputError: logs know none of them.
+    """
+    kept = [name for name in every if known is None or name in known]
+    if known is not None and not kept:
+        raise InputError(
+            where,
+            "joints",
+            sorted(known)[:8],
+            f"are joints of another robot; its own are {', '.join(every)}",
+        )
+    return kept
 
 
 def lock(spec: Any, kept: Collection[str]) -> tuple[str, ...]:

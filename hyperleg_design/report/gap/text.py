@@ -281,7 +281,7 @@ def _titles(where: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], str]:
 def _experiment(experiment: Mapping[str, Any]) -> str:
     """What to do next, for how long, and what it separates."""
     plan = dict(experiment)
-    text = f"{plan.pop('name', 'an experiment')}"
+    text = str(plan.pop("name", "an experiment"))
     if "minutes" in plan:
         text += f" ({plan.pop('minutes'):g} min)"
     if "do" in plan:

@@ -69,7 +69,7 @@ class Truth:
 
     @property
     def kind(self) -> str:
-        """One of `KINDS`."""
+        """Which of `KINDS` the case is, by its faults."""
         if not self.faults:
             return "nothing"
         if not all(fault.listed for fault in self.faults):

@@ -19,7 +19,7 @@ FAULTS = ("single", "everywhere", "several")
 
 @dataclass(frozen=True)
 class Measure:
-    """A share of cases."""
+    """How many cases of a kind have an outcome."""
 
     name: str
     hits: int

@@ -39,7 +39,7 @@ KEPT = ("schema", "verdict", "gap", "causes", "rivals", "equivalent", "remainder
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run gave."""
+    """Scored and skipped cases of a run."""
 
     rows: tuple[dict[str, Any], ...]
     """A scored case each, in the order of the benchmark."""

@@ -84,7 +84,7 @@ class Score:
     """Verdict and causes, or the rivals of an `unknown`, in short."""
 
     def mapping(self) -> dict[str, Any]:
-        """As results hold it."""
+        """Give the score as `results.json` holds it."""
         return dict(vars(self))
 
 

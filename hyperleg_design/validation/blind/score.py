@@ -40,7 +40,7 @@ SIZABLE = 2.0
 
 @dataclass(frozen=True)
 class Score:
-    """What a trial says."""
+    """Counts and rates of a blind trial's answers against its truth."""
 
     sha256: str
     cases: int

@@ -39,14 +39,14 @@ class Plan:
 
     @property
     def name(self) -> str:
-        """Of the case."""
+        """Name of the case, from robot, label, channels, references and seed."""
         parts = ["new", self.robot, self.label, self.channels]
         parts += ["referenced" if self.references else "alone"]
         return "-".join([*parts, *([str(self.seed)] if self.seed else [])]).replace(" ", "_")
 
     @property
     def kind(self) -> str:
-        """Of the case."""
+        """Which of `benchmark.case.KINDS` the case is, by its faults."""
         if not self.wrongs:
             return "nothing"
         if any(wrong.what not in EFFECTS for wrong in self.wrongs):

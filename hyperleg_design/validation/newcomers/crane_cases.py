@@ -42,7 +42,7 @@ class CranePlan:
 
     @property
     def kind(self) -> str:
-        """Of the case."""
+        """Which of `benchmark.case.KINDS` the case is, by its faults."""
         return Truth(_faults(self), everywhere=self.everywhere).kind
 
     @property

@@ -5,8 +5,8 @@ from __future__ import annotations
 import yaml
 
 from hyperleg_design.robot.load import load_robot
-from hyperleg_design.robot.motor_paths import with_motor_paths
 from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.robot.parameters.motor_paths import with_motor_paths
 from hyperleg_design.sweep.space import load_sweep
 from tests.robot.tree_files import leg_file
 

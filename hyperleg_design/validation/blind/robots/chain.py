@@ -78,7 +78,7 @@ class Chain:
 
     @property
     def joints(self) -> tuple[str, ...]:
-        """Names in order."""
+        """Names of the joints, from the base outward."""
         return tuple(link.joint for link in self.links)
 
     @property
