@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
 import reprlib
 import textwrap
+from collections.abc import Iterable
 from typing import Any
 
 _SHORT = reprlib.Repr()
@@ -78,6 +80,24 @@ def in_short(error: Exception, width: int = 100) -> str:
     text = " ".join(str(error).split())
     cut = textwrap.shorten(text, width, placeholder=" ...")
     return cut if 2 * len(cut) > width or len(text) <= width else text[: width - 4] + " ..."
+
+
+def meant(name: str, known: Iterable[str], otherwise: str = "") -> str:
+    """Write the remedy for a name that does not exist.
+
+    Args:
+        name: that was given.
+        known: names that exist.
+        otherwise: what to say where no name is near; all names by default.
+
+    Returns:
+        A question with the nearest name, or `otherwise`.
+    """
+    names = list(known)
+    near = difflib.get_close_matches(name[:100], names, n=1)
+    if near:
+        return f"did you mean {near[0]}?"
+    return otherwise or f"there are {', '.join(names) or 'none'}"
 
 
 class OutputError(HyperlegError):

@@ -10,7 +10,7 @@ import os
 from functools import cache
 from pathlib import Path
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 
 CONTENT = ("descriptions", "motors", "sweeps", "sim")
 NOUNS = {"descriptions": "design", "motors": "motor", "sweeps": "sweep", "sim": "sim"}
@@ -89,8 +89,13 @@ def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path
             return shipped
     except OSError as error:  # a name too long, a folder closed to us
         raise InputError(NOUNS[kind], "", str(name), f"cannot be read ({error.strerror})") from None
-    known = ", ".join(names(kind, suffix)) or "none"
-    raise InputError(NOUNS[kind], "", str(name), f"no such file; shipped: {known}")
+    raise InputError(
+        NOUNS[kind], "", str(name), f"no such file; {_shipped(str(name), names(kind, suffix))}"
+    )
+
+
+def _shipped(name: str, known: list[str]) -> str:
+    return meant(name, known, f"shipped: {', '.join(known) or 'none'}")
 
 
 def names(kind: str, suffix: str = ".yaml") -> list[str]:
@@ -134,5 +139,5 @@ def find_sim(what: str, name: str | os.PathLike[str]) -> Path:
     known = sim_names(what)
     path = find("sim", f"{what}_{name}") if str(name) in known else Path(name)
     if not path.is_file():
-        raise InputError(what, "", str(name), f"no such file; shipped: {', '.join(known)}")
+        raise InputError(what, "", str(name), f"no such file; {_shipped(str(name), known)}")
     return path

@@ -11,6 +11,7 @@ from hyperleg_design.errors import (
     InputError,
     OutputError,
     in_short,
+    meant,
     shown,
 )
 
@@ -85,3 +86,10 @@ def test_a_field_with_odd_characters_stays_in_one_line():
 )
 def test_what_libraries_say_is_cut_between_words(said, short):
     assert in_short(ValueError(said), 20) == short
+
+
+def test_a_name_that_does_not_exist_is_answered_by_the_nearest_or_by_all():
+    assert meant("toe_mas", ["motors", "toe_mass"]) == "did you mean toe_mass?"
+    assert meant("zzz", ["motors", "toe_mass"]) == "there are motors, toe_mass"
+    assert meant("zzz", []) == "there are none"
+    assert meant("zzz", ["motors"], "ask") == "ask"

@@ -36,6 +36,13 @@ def test_what_is_not_there_lists_what_is(name):
         resources.find("descriptions", name)
 
 
+def test_a_misspelt_name_is_answered_by_the_nearest():
+    with pytest.raises(InputError, match=r"'toe_mas': no such file; did you mean toe_mass\?$"):
+        resources.find("sweeps", "toe_mas")
+    with pytest.raises(InputError, match=r"did you mean walk_free\?$"):
+        resources.find_sim("task", "walk_fre")
+
+
 def test_unknown_kind_is_a_mistake_of_ours():
     with pytest.raises(ValueError, match="descriptions"):
         resources.content_folder("robots")

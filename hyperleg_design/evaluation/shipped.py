@@ -15,7 +15,6 @@ the five above and halves the precision of weights.
 
 from __future__ import annotations
 
-import difflib
 import hashlib
 import itertools
 import json
@@ -28,7 +27,7 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design import resources
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.evaluation.half_precision import halve_weights
 from hyperleg_design.writing import output_folder, write_bytes, write_text
 
@@ -229,14 +228,9 @@ def find_policy(name: str | Path, where: str = "policy") -> Path:
     if len(path.parts) == 1 and named.is_file():
         return named
     known = [policy.training for policy in shipped_policies(late=False)]
-    near = difflib.get_close_matches(str(name), known, 1)
-    meant = f"did you mean {near[0]}? Shipped" if near else "shipped"
-    raise InputError(
-        where,
-        "",
-        str(name),
-        f"no such file; {meant}, with their seeds: {trainings_text(known) or 'none'}",
-    )
+    shipped = f"Shipped, with their seeds: {trainings_text(known) or 'none'}"
+    remedy = f"{meant(str(name), known, 'no near name.')} {shipped}"
+    raise InputError(where, "", str(name), f"no such file; {remedy}")
 
 
 def trainings_text(names: Iterable[str]) -> str:

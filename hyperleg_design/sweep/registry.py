@@ -157,7 +157,7 @@ def resolve(name: str, protocols: Sequence[str] = (), where: str = "measures") -
         where,
         "",
         name,
-        parameters.unknown(name, sorted(entries())).replace("such field", "such measure")
+        parameters.unknown(name, sorted(entries()), "measure")
         + "; hyperleg list measures shows all",
     )
 

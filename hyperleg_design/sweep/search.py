@@ -121,8 +121,8 @@ def search_of(
     for name in named:
         if not registry.entry(name).protocol and name not in at_hand:
             known = measures.columns(measures.measures_of(sweep.base), sweep.base)
-            near = parameters.unknown(name, sorted(known))
-            raise InputError("search", "", name, near.replace("such field", "such measure"))
+            remedy = parameters.unknown(name, sorted(known), "measure")
+            raise InputError("search", "", name, remedy)
     return Search(space, plan, chosen, bounds)
 
 

@@ -192,9 +192,7 @@ def _variants(value: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
                 where,
                 "variants",
                 variant,
-                parameters.unknown(str(variant), list(LAYOUTS)).replace(
-                    "such field", "such variant"
-                ),
+                parameters.unknown(str(variant), list(LAYOUTS), "variant"),
             )
     return tuple(value)
 
@@ -277,7 +275,7 @@ def _measures(value: Any, base: RobotDesign, where: str) -> tuple[str, ...]:
                 where,
                 "measures",
                 name,
-                parameters.unknown(str(name), known).replace("such field", "such measure"),
+                parameters.unknown(str(name), known, "measure"),
             )
     return tuple(name for name in known if name in chosen)
 

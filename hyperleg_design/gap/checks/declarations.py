@@ -6,6 +6,7 @@ import difflib
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
+from hyperleg_design.errors import meant
 from hyperleg_design.gap.logs.metadata import FIELDS, Metadata
 from hyperleg_design.gap.results.finding import ERROR, WARNING, Finding
 
@@ -43,6 +44,5 @@ def declarations(metadata: Metadata, subject: Subject | None) -> list[Finding]:
 
 
 def _stranger(field: str, name: str, known: Collection[str]) -> Finding:
-    near = difflib.get_close_matches(name, known, 1)
-    remedy = f"did you mean {near[0]}?" if near else f"there are {', '.join(sorted(known))}"
-    return Finding(ERROR, "", f"metadata declare {field} of {name}, which the robot lacks", remedy)
+    text = f"metadata declare {field} of {name}, which the robot lacks"
+    return Finding(ERROR, "", text, meant(name, sorted(known)))

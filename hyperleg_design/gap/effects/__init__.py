@@ -4,12 +4,11 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import inspect
 import pkgutil
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.gap.effects.effect import Effect
 
 
@@ -50,10 +49,4 @@ def effect(identifier: str) -> Effect:
     """
     if identifier in EFFECTS:
         return EFFECTS[identifier]
-    near = difflib.get_close_matches(identifier, EFFECTS, n=1)
-    raise InputError(
-        "effect",
-        "",
-        identifier,
-        f"did you mean {near[0]}?" if near else f"expects one of {', '.join(EFFECTS)}",
-    )
+    raise InputError("effect", "", identifier, meant(identifier, EFFECTS))

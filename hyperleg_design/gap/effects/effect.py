@@ -4,14 +4,13 @@ and its way into the simulation.
 
 from __future__ import annotations
 
-import difflib
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.excitation import Excitation, Motion
@@ -112,13 +111,7 @@ class Effect(ABC):
             raise InputError(
                 self.identifier, "location", location, f"this robot has no {self.kind} for it"
             )
-        near = difflib.get_close_matches(location, found, n=1)
-        raise InputError(
-            self.identifier,
-            "location",
-            location,
-            f"did you mean {near[0]}?" if near else f"expects one of {', '.join(found)}",
-        )
+        raise InputError(self.identifier, "location", location, meant(location, found))
 
     @abstractmethod
     def excited(self, log: Log, motion: Motion) -> Excitation:

@@ -5,7 +5,6 @@ anybody's MJCF or URDF.
 from __future__ import annotations
 
 import dataclasses
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.gap.logs.metadata import STANDARD_GRAVITY, Metadata
 from hyperleg_design.gap.model import robot_file
 from hyperleg_design.gap.model.mechanism import Mechanism, mechanism_of, pinocchio_model
@@ -248,9 +247,7 @@ def index_of(name: str, names: Sequence[str], field: str, what: str) -> int:
     """
     if name in names:
         return names.index(name)
-    near = difflib.get_close_matches(name, names, n=1)
-    remedy = f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
-    raise InputError("log", field, name, f"is no {what} of this robot; {remedy}")
+    raise InputError("log", field, name, f"is no {what} of this robot; {meant(name, names)}")
 
 
 def _least_heat(subject: Subject) -> np.ndarray:

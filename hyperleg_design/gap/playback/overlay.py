@@ -12,7 +12,6 @@ nothing depends on it.
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -22,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import yaml
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.reading import read_json, read_yaml, short_name
 from hyperleg_design.writing import write_text
@@ -253,12 +252,7 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
 def _only(content: Mapping[str, Any], known: tuple[str, ...], where: str, place: str) -> None:
     for key in content:
         if key not in known:
-            near = difflib.get_close_matches(str(key), known, n=1)
-            remedy = (
-                f"no such field; did you mean {near[0]}?"
-                if near
-                else f"no such field; there are {', '.join(known)}"
-            )
+            remedy = f"no such field; {meant(str(key), known)}"
             raise InputError(where, f"{place}.{key}".lstrip("."), None, remedy)
 
 

@@ -12,7 +12,6 @@ A leaf holds one value, or, in a batch of designs, an array of them with the bat
 from __future__ import annotations
 
 import dataclasses
-import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -21,7 +20,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.robot.parameters.fields import Rule, is_leaf, rule_of, section_types
 
 LABELS = ("paper", "vendor", "derived", "assumed", "user")
@@ -245,22 +244,18 @@ def labelled(data: Any, where: str, path: str) -> tuple[Any, Origin]:
     return data["value"], Origin(label, str(data.get("source", "")))
 
 
-def unknown(name: str, known: list[str]) -> str:
+def unknown(name: str, known: list[str], what: str = "field") -> str:
     """Write the remedy for a name that does not exist: the nearest name, or all of them.
 
     Args:
         name: that was given.
         known: names that exist.
+        what: is named.
 
     Returns:
         The text.
     """
-    near = difflib.get_close_matches(name[:100], known, n=1)
-    return (
-        f"no such field; did you mean {near[0]}?"
-        if near
-        else f"no such field; there are {some(known)}"
-    )
+    return f"no such {what}; {meant(name, known, f'there are {some(known)}')}"
 
 
 def some(names: Iterable[str]) -> str:

@@ -139,7 +139,7 @@ def test_what_is_no_yaml_is_told(tmp_path):
     ("place", "message"),
     [
         (("payload", "left_tow"), "did you mean"),
-        (("coulomb_friction", "elbow"), "expects one of"),
+        (("coulomb_friction", "elbow"), "there are"),
         (("ground_friction", "left_hand"), "left_foot"),
     ],
 )
@@ -175,7 +175,7 @@ def test_a_diagnosis_becomes_an_overlay(tmp_path):
     for broken, message in (
         ({**content, "causes": [], "verdict": "none"}, "nothing to add: the verdict is none"),
         ({**content, "causes": [{"effect": "payload"}]}, r"causes.0"),
-        ({**content, "causes": [{**cause, "effect": "magic"}]}, "expects one of"),
+        ({**content, "causes": [{**cause, "effect": "magic"}]}, "there are"),
         ({**content, "schema": 7}, "is not a diagnosis"),
         ([], "is not a diagnosis"),
     ):
