@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.mjcf import FLOOR
@@ -47,13 +48,9 @@ class Slope(Alteration):
         angle = np.deg2rad(self.degrees)
         return np.array([np.sin(angle), 0.0, np.cos(angle)])
 
+    @override
     def edit(self, model: mujoco.MjModel, simulation: int = 0) -> None:
-        """Turn gravity, so that the level floor is a slope.
-
-        Args:
-            model: compiled model, which is changed.
-            simulation: index of the simulation; the slope is the same in all.
-        """
+        """Turn gravity, so that the level floor is a slope."""
         model.opt.gravity[:] = -GRAVITY * self.vertical
 
 
@@ -86,12 +83,9 @@ class UnevenFloor(Alteration):
         heights[np.ix_(np.abs(y) <= FLAT, np.abs(x) <= FLAT)] = 0.5
         return heights
 
+    @override
     def shape(self, spec: mujoco.MjSpec) -> None:
-        """Replace the plane by a height field under the same name.
-
-        Args:
-            spec: specification of the model, which is changed.
-        """
+        """Replace the plane by a height field under the same name."""
         import mujoco
 
         heights = self.heights()

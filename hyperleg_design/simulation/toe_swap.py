@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.ablation import states
@@ -57,15 +58,9 @@ class LockedToe(Alteration):
 
     live = _Held
 
+    @override
     def machine(self, machine: Machine) -> Machine:
-        """Take the torque of the toe joints out of the controller's map.
-
-        Args:
-            machine: of the robot.
-
-        Returns:
-            The changed machine.
-        """
+        """Take the torque of the toe joints out of the controller's map."""
         driven = np.array([name not in TOES for name in machine.joints])
         matrix = machine.joint_from_motor
         own = motor_from_joint(matrix[..., driven, :], machine.power_constant)
@@ -78,15 +73,10 @@ class LockedToe(Alteration):
 class ToeMotorAlone(Alteration):
     """Takes the toe motors' help from knee and ankle."""
 
+    @override
     def machine(self, machine: Machine) -> Machine:
         """Take the coupling of the toe's motor with other joints out of transmission and
         controller.
-
-        Args:
-            machine: of the robot.
-
-        Returns:
-            The changed machine.
         """
         matrix = machine.joint_from_motor.copy()
         others = [j for j, name in enumerate(machine.joints) if name not in TOES]
@@ -104,15 +94,9 @@ class ToeMotorToAnkle(Alteration):
     heat as much as one of 1 / n of the power constant.
     """
 
+    @override
     def machine(self, machine: Machine) -> Machine:
-        """Enlarge the ankle motors by the share of the toe's motor.
-
-        Args:
-            machine: of the robot.
-
-        Returns:
-            The changed machine.
-        """
+        """Enlarge the ankle motors by the share of the toe's motor."""
         larger = ("peak_torque", "stall_torque", "rated_torque", "rotor_inertia")
         for name in ANKLES:
             place = machine.motor(name)

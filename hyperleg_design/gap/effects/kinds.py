@@ -9,6 +9,7 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.placing import at_joint, at_motor, driven_motors
@@ -23,32 +24,16 @@ class JointEffect(Effect):
 
     kind: ClassVar[str] = "joint"
 
+    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the joints at which it can sit, see `Effect.locations`.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the joints; empty where it can sit nowhere on this robot.
-        """
         return subject.joints
 
 
 class JointTorque(JointEffect):
     """A torque that a joint takes from its drive, beyond the model."""
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual of motion that the torque leaves at its joint, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            The residual of motion, `(k, t, joints)` [Nm].
-        """
         joint = signals.subject.joints.index(location)
         settings = np.atleast_2d(np.asarray(values, float))
         return at_joint(signals, joint, self._torque(signals, joint, *settings.T[..., None]))
@@ -63,33 +48,16 @@ class MotorEffect(Effect):
 
     kind: ClassVar[str] = "motor"
 
+    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the motors at which it can sit, see `Effect.locations`.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the motors; empty where it can sit nowhere on this robot.
-        """
         return driven_motors(subject)
 
 
 class MotorTorque(MotorEffect):
     """A torque that is lost between the measured torque of a motor and the joints."""
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual of motion that the torque leaves at the joints that the motor moves,
-        see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            The residual of motion, `(k, t, joints)` [Nm].
-        """
         motor = signals.subject.motors.index(location)
         settings = np.atleast_2d(np.asarray(values, float))
         return at_motor(signals, motor, self._torque(signals, motor, *settings.T[..., None]))
@@ -106,13 +74,6 @@ class FootEffect(Effect):
 
     kind: ClassVar[str] = "foot"
 
+    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the feet under which it can sit, see `Effect.locations`.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the feet; empty where the base is fixed.
-        """
         return subject.feet if subject.floating else ()

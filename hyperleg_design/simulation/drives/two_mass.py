@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 from hyperleg_design.simulation.drives.actuation import applied
@@ -54,15 +55,9 @@ class Belt(Alteration):
     """Where the encoder that tells of the joints sits, `()` or `(n,)`: 0 at the joints, 1 at the
     rotor, which it takes for them."""
 
+    @override
     def machine(self, machine: Machine) -> Machine:
-        """Let the rotor move freely where the belt is not rigid.
-
-        Args:
-            machine: of the robot.
-
-        Returns:
-            The changed machine.
-        """
+        """Let the rotor move freely where the belt is not rigid."""
         place = machine.motor(self.motor)
         loose = (np.asarray(self.compliance, float) > 0) | (np.asarray(self.play, float) > 0)
         inertia = np.asarray(machine.rotor_inertia, float)

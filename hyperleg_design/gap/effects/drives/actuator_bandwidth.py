@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
@@ -57,44 +58,19 @@ class ActuatorBandwidth(MotorEffect):
         "chirp past 8 Hz": frozenset({"controller_gain", "rotor_inertia", "viscous_friction"}),
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Half as late as all drives together.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """Half as late as all drives together."""
         return dict.fromkeys(self.locations(subject), np.array([0.5 * lateness(step)]))
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         good = f"commands reach past {BANDWIDTH:.0f} Hz"
         lacking = f"commands hold nothing above {BANDWIDTH:.0f} Hz: looks like delay"
         return at_drives(self.identifier, motion, motion.command > BANDWIDTH, good, lacking)
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         motor = signals.subject.motors.index(location)
         if not is_commanded(signals, motor):
             return {}
@@ -102,29 +78,13 @@ class ActuatorBandwidth(MotorEffect):
         lag = np.atleast_2d(np.asarray(values, float))[:, 0]
         return before_measurement(signals, {motor: lagged(given, lag, signals.step) - given})
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         return LaggingTorque(location, np.asarray(values, float)[..., 0])
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """A few lags.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
-        """
+        """A few lags."""
         return np.array([[0.003], [0.01], [0.03]])
 
 

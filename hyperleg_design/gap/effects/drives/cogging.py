@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import SLOW, Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import FRICTION
@@ -76,16 +77,8 @@ class Cogging(MotorTorque):
         "slow ramp": FRICTION | {"encoder_offset", "joint_spring"},
     }
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         slow = motion.swinging & (motion.slow > SLOW)
         return at_joints(
             self.identifier, motion, slow, "slow motion over a range", "no slow motion over a range"
@@ -97,61 +90,31 @@ class Cogging(MotorTorque):
         angle = order * motor_position(signals, motor)
         return cosine * np.cos(angle) + sine * np.sin(angle)
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         values = np.asarray(values, float)
         return CoggingTorque(location, values[..., 0], values[..., 1], values[..., 2])
 
+    @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the torque that the motor is made for.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Usual distances from the nulls `(parameters,)`.
-        """
+        """A share of the torque that the motor is made for."""
         motor = subject.motors.index(location)
         share = SHARE * motor_strength(subject, motor)
         return np.array(
             [share, share, self.parameters[2].typical * max(abs(float(subject.gear[motor])), 1.0)]
         )
 
+    @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Amplitudes up to the torque that the motor is made for.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Least and largest values `(2, parameters)`.
-        """
+        """Amplitudes up to the torque that the motor is made for."""
         found = super().bounds(location, subject)
         most = min(found[1, 0], motor_strength(subject, subject.motors.index(location)))
         found[0, :2], found[1, :2] = -most, most
         return found
 
+    @override
     def steps(self, location: str, subject: Subject) -> np.ndarray:
-        """Those of the order turn the phase little over a radian of the joint.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            The steps `(parameters,)`.
-        """
+        """Those of the order turn the phase little over a radian of the joint."""
         found = super().steps(location, subject)
         found[2] = min(
             found[2],
@@ -159,35 +122,21 @@ class Cogging(MotorTorque):
         )
         return found
 
+    @override
     def derived(
         self, location: str, values: np.ndarray, subject: Subject
     ) -> dict[str, tuple[float, str]]:
-        """Amplitude, and the angle at which it resists most.
-
-        Args:
-            location: one of `locations`.
-            values: of the parameters `(parameters,)`.
-            subject: the robot.
-
-        Returns:
-            Quantities by name, each with its unit.
-        """
+        """Amplitude, and the angle at which it resists most."""
         cosine, sine, order = values
         return {
             "amplitude": (float(np.hypot(cosine, sine)), "Nm"),
             "phase": (float(np.arctan2(sine, cosine) / order), "rad"),
         }
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The orders that explain most of the residual of this log, each more than its neighbours,
         with their amplitudes.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
         """
         subject = signals.subject
         motor = subject.motors.index(location)

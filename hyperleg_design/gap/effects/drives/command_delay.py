@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
@@ -64,53 +65,25 @@ class CommandDelay(Effect):
         "actuator_bandwidth": "gain and phase at high frequency",
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Of all drives together.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """Of all drives together."""
         return {ROBOT: np.append(lateness(step), np.zeros(len(self.parameters) - 1))}
 
+    @override
     def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Of one drive as of all.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """Of one drive as of all."""
         of_all = self.nuisance_spreads(subject, step)[ROBOT]
         return dict.fromkeys(self.locations(subject), of_all)
 
+    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """The robot, and where it has several motors, each of them.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
+        """The robot, and where it has several motors, each of them."""
         motors = driven_motors(subject)
         return (ROBOT, *(motors if len(motors) > 1 else ()))
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         lacking = f"commands hold nothing above {COMMAND} Hz"
         return at_drives(
             self.identifier,
@@ -120,30 +93,13 @@ class CommandDelay(Effect):
             lacking,
         )
 
+    @override
     def place(self, location: str, subject: Subject) -> str:
-        """The one that is meant; the only motor is the robot.
-
-        Args:
-            location: name of the place, as people may write it.
-            subject: the robot.
-
-        Returns:
-            The location.
-        """
+        """The one that is meant; the only motor is the robot."""
         return ROBOT if (location,) == driven_motors(subject) else super().place(location, subject)
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         delay, late = np.atleast_2d(np.asarray(values, float)).T
         targets = late >= TARGETS
         moved = (
@@ -175,17 +131,8 @@ class CommandDelay(Effect):
             {} if control is None else {"control": control}
         )
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         motors = driven_motors(subject) if location == ROBOT else (location,)
         joints = tuple(
             dict.fromkeys(
@@ -202,27 +149,14 @@ class CommandDelay(Effect):
             np.where(late < TARGETS, 0.0, delay),
         )
 
+    @override
     def fixed(self, values: np.ndarray) -> np.ndarray:
-        """Nothing is between commands and targets.
-
-        Args:
-            values: of the parameters `(parameters,)`.
-
-        Returns:
-            Whether each parameter stays `(parameters,)` of bool.
-        """
+        """Nothing is between commands and targets."""
         return np.array([False, True])
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """A few delays, of commands and, where they are known, of targets.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
-        """
+        """A few delays, of commands and, where they are known, of targets."""
         ways = (0.0, 1.0) if _told(signals, location) else (0.0,)
         return np.array([[delay, way] for way in ways for delay in (0.003, 0.01, 0.025)])
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import STEERED
 from hyperleg_design.gap.effects.excitation import STILL, Excitation, Motion, at_drives
@@ -70,56 +71,25 @@ class ControllerGain(JointEffect):
         "torque_saturation": "several amplitudes",
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of both gains.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """A share of both gains."""
         return dict.fromkeys(self.locations(subject), np.array([USUAL, USUAL]))
 
+    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints with known gains.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
+        """Joints with known gains."""
         known = np.isfinite(subject.gains).all(1) & (subject.gains != 0).any(1) & ~subject.passive
         return tuple(name for name, here in zip(subject.joints, known, strict=True) if here)
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         return at_drives(
             self.identifier, motion, motion.swinging, "targets, gains and motion", STILL
         )
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         subject = signals.subject
         joint = subject.joints.index(location)
         if signals.target is None or not np.isfinite(signals.target[:, joint]).any():
@@ -155,30 +125,14 @@ class ControllerGain(JointEffect):
             {} if control is None else {"control": control}
         )
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         values = np.asarray(values, float)
         return ScaledGains(location, values[..., 0], values[..., 1])
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Softer and stiffer, with and without the damping.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
-        """
+        """Softer and stiffer, with and without the damping."""
         return np.array(
             [[0.8, 0.8], [1.25, 1.25], [0.8, 1.0], [1.25, 1.0], [1.0, 0.8], [1.0, 1.25]]
         )
@@ -193,15 +147,9 @@ class ScaledGains(Alteration):
     damping: Any
     """`()` or `(n,)` each [-]."""
 
+    @override
     def machine(self, machine: Machine) -> Machine:
-        """With the other gains.
-
-        Args:
-            machine: the machine that the robot is to its drives.
-
-        Returns:
-            The changed machine.
-        """
+        """With the other gains."""
         place = machine.joint(self.joint)
         machine = machine.changed("stiffness", place, lambda own: own * self.stiffness)
         return machine.changed("damping", place, lambda own: own * self.damping)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import INERTIAL
@@ -61,16 +62,9 @@ class RotorInertia(MotorTorque):
         "link_mass": "several postures",
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the rotor, and of its joint.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """A share of the rotor, and of its joint."""
         inertia, spreads = joint_inertia(subject), {}
         for location in self.locations(subject):
             motor = subject.motors.index(location)
@@ -84,16 +78,8 @@ class RotorInertia(MotorTorque):
             )
         return spreads
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         moved = motion.reversing & (motion.content > CONTENT)
         return at_joints(
             self.identifier, motion, moved, "motion accelerates", "hardly any acceleration"
@@ -102,30 +88,15 @@ class RotorInertia(MotorTorque):
     def _torque(self, signals: Signals, motor: int, inertia: np.ndarray) -> np.ndarray:
         return inertia * (signals.acceleration @ signals.subject.joint_from_motor[:, motor])
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`; what is taken away never exceeds the model's.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
+        """What is taken away never exceeds the model's."""
         own = subject.rotor_inertia[subject.motors.index(location)]
         return AddedRotor(location, np.maximum(np.asarray(values, float)[..., 0], -own))
 
+    @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the rotor's own inertia, or of its joints' as the motor feels it.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Usual distances from the nulls `(parameters,)`.
-        """
+        """A share of the rotor's own inertia, or of its joints' as the motor feels it."""
         motor = subject.motors.index(location)
         own = float(subject.rotor_inertia[motor])
         column = subject.joint_from_motor[:, motor]
@@ -134,16 +105,9 @@ class RotorInertia(MotorTorque):
             [SHARE * max(own, 0.03 * float(joint_inertia(subject)[main]) / column[main] ** 2)]
         )
 
+    @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """No less than no rotor at all.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Least and largest values `(2, parameters)`.
-        """
+        """No less than no rotor at all."""
         found = super().bounds(location, subject)
         found[0] = -subject.rotor_inertia[subject.motors.index(location)]
         return found
@@ -157,15 +121,9 @@ class AddedRotor(Alteration):
     inertia: Any
     """`()` or `(n,)` [kg m^2]."""
 
+    @override
     def machine(self, machine: Machine) -> Machine:
-        """With the heavier rotor.
-
-        Args:
-            machine: the machine that the robot is to its drives.
-
-        Returns:
-            The changed machine.
-        """
+        """With the heavier rotor."""
         return machine.changed(
             "rotor_inertia", machine.motor(self.motor), lambda own: own + self.inertia
         )

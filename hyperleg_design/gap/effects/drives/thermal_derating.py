@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import SCALING, WITH_LOAD
@@ -70,16 +71,8 @@ class ThermalDerating(MotorTorque):
         "cold and warm": SCALING | {"load_dependent_friction"},
     }
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         known = {m: log.column(f"motor_temperature/{m}") for m in log.motors}
         rise = {
             m: float(np.nanmax(values) - np.nanmin(values))
@@ -100,34 +93,17 @@ class ThermalDerating(MotorTorque):
     def _torque(self, signals: Signals, motor: int, coefficient: np.ndarray) -> np.ndarray:
         return coefficient * (rise(signals, motor) * given(signals, motor))
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         return DeratedMotor(
             location,
             np.asarray(values, float)[..., 0],
             rated_torque(subject, subject.motors.index(location)),
         )
 
+    @override
     def torque_slope(self, signals: Signals, motor: int, joint: int) -> np.ndarray:
-        """Compute how the factor on the torque falls with the temperature.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            motor: index of the motor that gives the torque.
-            joint: index of the joint that it moves most.
-
-        Returns:
-            The slope, `(t,)`.
-        """
+        """Compute how the factor on the torque falls with the temperature."""
         return -np.nan_to_num(rise(signals, motor))
 
 

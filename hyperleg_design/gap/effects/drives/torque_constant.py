@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import NEEDED
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
@@ -74,32 +75,17 @@ class TorqueConstant(MotorEffect):
         "payload": "a known payload, or several loads",
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Of the constant, and of what a drive says that it gives.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """Of the constant, and of what a drive says that it gives."""
         return dict.fromkeys(self.locations(subject), np.array([CONSTANT, TELLS]))
 
+    @override
     def nuisance_trace(
         self, signals: Signals, location: str, parameter: int, spread: float
     ) -> dict[str, np.ndarray] | None:
         """A reading that is off alone: a share of what a motor was asked for, where it is also
         measured.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            parameter: index of the parameter.
-            spread: the share.
-
-        Returns:
-            By name of the residual `(t, rows)`; None for the constant.
         """
         if parameter != READING:
             return None
@@ -110,16 +96,8 @@ class TorqueConstant(MotorEffect):
         rows[:, motor] = spread * (signals.measured - signals.residual["drive"])[:, motor]
         return {"drive": rows}
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         motors = tuple(
             m for m in log.motors if log.has("motor_current", m) or log.has("motor_torque", m)
         )
@@ -130,18 +108,8 @@ class TorqueConstant(MotorEffect):
         why = "current or torque under a changing load" if moved else "the load hardly changes"
         return Excitation(self.identifier, moved, motors if moved else (), why)
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         motor = signals.subject.motors.index(location)
         scale, reading = np.atleast_2d(np.asarray(values, float)).T[..., None]
         lost = (1.0 - scale) * given(signals, motor)
@@ -150,30 +118,15 @@ class TorqueConstant(MotorEffect):
             found |= before_measurement(signals, {motor: reading * lost})
         return found
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         values = np.asarray(values, float)
         return ScaledTorque(location, values[..., 0], values[..., 1])
 
+    @override
     def variants(self, signals: Signals, location: str) -> np.ndarray:
         """Another motor; and a wrong reading, where the log tells both what was asked for and what
         was given.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(v, parameters)`.
         """
         both = _told_twice(signals, signals.subject.motors.index(location))
         return np.array([[1.0, 0.0], [1.0, 1.0]] if both else [[1.0, 0.0]])

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
@@ -60,16 +61,8 @@ class TorqueSaturation(MotorEffect):
         "log torque or current": BEYOND_COMMANDS,
     }
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         return at_drives(
             self.identifier,
             motion,
@@ -78,18 +71,8 @@ class TorqueSaturation(MotorEffect):
             "commands hardly change",
         )
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         motor = signals.subject.motors.index(location)
         if not is_commanded(signals, motor):
             return {}
@@ -100,54 +83,23 @@ class TorqueSaturation(MotorEffect):
             {motor: limited(signals, motor, asked, peak=limit) - limited(signals, motor, asked)},
         )
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         return LowerLimit(location, _limit(np.asarray(values, float)[..., 0]))
 
+    @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A limit of 60 % of the torque that the motor is made for.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Usual distances from the nulls `(parameters,)`.
-        """
+        """A limit of 60 % of the torque that the motor is made for."""
         return np.array([1 / (0.6 * motor_strength(subject, subject.motors.index(location)))])
 
+    @override
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
-        """A limit that slow motion reaches, the lower the larger.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-            size: over the usual distance from the nulls.
-
-        Returns:
-            Values `(parameters,)`.
-        """
+        """A limit that slow motion reaches, the lower the larger."""
         return np.array([size / (0.1 * motor_strength(subject, subject.motors.index(location)))])
 
+    @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """A drive that gives next to nothing is no limited one.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Least and largest values `(2, parameters)`.
-        """
+        """A drive that gives next to nothing is no limited one."""
         low, high = super().bounds(location, subject)
         return np.array(
             [
@@ -158,16 +110,10 @@ class TorqueSaturation(MotorEffect):
             ]
         )
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The torque that the motion hardly ever needs more than, and torques that the command of
         this log exceeds ever more often.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
         """
         motor = signals.subject.motors.index(location)
         if not is_commanded(signals, motor):
@@ -181,19 +127,11 @@ class TorqueSaturation(MotorEffect):
             ]
         )
 
+    @override
     def derived(
         self, location: str, values: np.ndarray, subject: Subject
     ) -> dict[str, tuple[float, str]]:
-        """Compute the torque limit of the motor.
-
-        Args:
-            location: one of `locations`.
-            values: of the parameters `(parameters,)`.
-            subject: the robot.
-
-        Returns:
-            Quantities by name, each with its unit.
-        """
+        """Compute the torque limit of the motor."""
         return {"limit": (float(_limit(values[0])), "Nm")}
 
 

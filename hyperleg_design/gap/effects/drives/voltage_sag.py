@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.drives.weak_battery import WeakBattery, modelled
 from hyperleg_design.gap.effects.effect import Effect
@@ -101,27 +102,13 @@ class VoltageSag(Effect):
         "stiff supply": LATE | SCALING | {"torque_saturation"},
     }
 
+    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """List the battery as the only place.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
+        """List the battery as the only place."""
         return (BATTERY,) if driven_motors(subject) else ()
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         values = log.column("battery_voltage")
         if not np.isfinite(values).any():
             return Excitation(self.identifier, False, (), "no battery voltage")
@@ -140,30 +127,13 @@ class VoltageSag(Effect):
             why if enough else f"{why}; {100 * SAGGING:.0f} % are needed",
         )
 
+    @override
     def place(self, location: str, subject: Subject) -> str:
-        """The battery, also as the robot.
-
-        Args:
-            location: name of the place, as people may write it.
-            subject: the robot.
-
-        Returns:
-            The location.
-        """
+        """The battery, also as the robot."""
         return super().place(BATTERY if location == "robot" else location, subject)
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         subject = signals.subject
         limits, torque, speed = np.atleast_2d(np.asarray(values, float)).T[..., None]
         lost = missing(signals)
@@ -190,17 +160,8 @@ class VoltageSag(Effect):
             changes[motor] = given - limited(signals, motor, asked)
         return before_measurement(signals, changes)
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         values = np.asarray(values, float)
         strength = np.array(
             [motor_strength(subject, motor) for motor in range(len(subject.motors))]
@@ -215,16 +176,10 @@ class VoltageSag(Effect):
             reference_power(subject),
         )
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Limits alone, torques alone; of motors whose line nobody knows, also the line on which
         they give less than they are told.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
         """
         if np.isfinite(signals.subject.stall_torque).all():
             return np.array([[1.0, 0.0, 10.0], [3.0, 0.0, 10.0], [0.0, 1.0, 10.0]])

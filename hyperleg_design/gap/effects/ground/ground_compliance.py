@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import FRICTION, INERTIAL
@@ -59,58 +60,24 @@ class GroundCompliance(FootEffect):
         "push on the ground": FRICTION | INERTIAL | {"ground_friction"},
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Of how the ground gives and damps, which no simulator has from a measurement.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """Of how the ground gives and damps, which no simulator has from a measurement."""
         return dict.fromkeys(self.locations(subject), np.array([USUAL, USUAL]))
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         feet = tuple(f for f in log.feet if log.has("contact_force", f"{f}_z"))
         why = "vertical contact forces" if feet else "no contact forces"
         return Excitation(self.identifier, bool(feet), feet, why)
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         scale, damping = np.atleast_2d(np.asarray(values, float)).T
         return ground_trace(signals, location, np.ones_like(scale), scale, damping)
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         values = np.asarray(values, float)
         bodies = nominal_ground.foot_bodies(subject, subject.feet.index(location))
         return ChangedGround(bodies, compliance=values[..., 0], damping=values[..., 1])

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import FRICTION, INERTIAL
@@ -52,76 +53,35 @@ class GroundFriction(FootEffect):
         "push on the ground": FRICTION | INERTIAL | {"ground_compliance"},
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the ground's friction.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """A share of the ground's friction."""
         return dict.fromkeys(self.locations(subject), np.array([USUAL]))
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         feet = tuple(
             f for f in log.feet if any(log.has("contact_force", f"{f}_{axis}") for axis in "xy")
         )
         why = "forces along the ground" if feet else "no contact forces along the ground"
         return Excitation(self.identifier, bool(feet), feet, why)
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         scale = np.atleast_2d(np.asarray(values, float))[:, 0]
         return ground_trace(signals, location, scale, np.ones_like(scale), np.ones_like(scale))
 
+    @override
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
         """As slippery as ice, because a ground that holds better than needed does nothing, and feet
         creep before they slide.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-            size: over the usual distance from the nulls.
-
-        Returns:
-            Values `(parameters,)`.
         """
         return np.maximum(
             self.nulls - ICE * size * self.usual(location, subject), self.parameters[0].low
         )
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         return ChangedGround(
             nominal_ground.foot_bodies(subject, subject.feet.index(location)),
             friction=np.asarray(values, float)[..., 0],
@@ -171,13 +131,9 @@ class ChangedGround(Alteration):
     compliance: Any = 1.0
     damping: Any = 1.0
 
+    @override
     def edit(self, model: mujoco.MjModel, simulation: int = 0) -> None:
-        """Give the bodies' shapes the pair's settings, scaled, and precedence over the floor's.
-
-        Args:
-            model: the compiled model, which is changed.
-            simulation: index of the simulation, of values that have one row each.
-        """
+        """Give the bodies' shapes the pair's settings, scaled, and precedence over the floor's."""
         friction, compliance, damping = (
             float(v if np.ndim(v) == 0 else v[simulation])
             for v in (np.asarray(x, float) for x in (self.friction, self.compliance, self.damping))

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import FEW, REVERSES, Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import FRICTION
@@ -55,46 +56,22 @@ class CoulombFriction(DescribedFriction):
         "backlash": "preload",
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the model's friction, and of what the joint is made for.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """A share of the model's friction, and of what the joint is made for."""
         spreads = OF_FRICTION * subject.coulomb + least_friction(subject)
         return {joint: np.array([s]) for joint, s in zip(subject.joints, spreads, strict=True)}
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         return at_joints(self.identifier, motion, motion.reversing, REVERSES, FEW)
 
     def _torque(self, signals: Signals, joint: int, torque: np.ndarray) -> np.ndarray:
         return torque * sliding(signals)[:, joint]
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`; what is taken away never exceeds the model's, and has its
-        width.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
+        """What is taken away never exceeds the model's, and has its width."""
         joint = subject.joints.index(location)
         torque = np.maximum(np.asarray(values, float)[..., 0], -subject.coulomb[joint])
         return JointFriction(

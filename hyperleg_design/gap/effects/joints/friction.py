@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.families import FRICTION as FRICTION
 from hyperleg_design.gap.effects.kinds import JointTorque
@@ -31,28 +32,13 @@ class DescribedFriction(JointTorque):
     def _described(subject: Subject) -> np.ndarray:
         """What the model has of it, `(joints,)`."""
 
+    @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """Compute a share of the torque that the joint is made for, see `Effect.usual`.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Usual distances from the nulls `(1,)`.
-        """
         return np.array([self.share * joint_strength(subject)[subject.joints.index(location)]])
 
+    @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Bound it by no friction at all, and by the torque that the joint is made for.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Least and largest values `(2, 1)`.
-        """
+        """Bound it by no friction at all, and by the torque that the joint is made for."""
         joint = subject.joints.index(location)
         largest = min(self.parameters[0].high, joint_strength(subject)[joint])
         return np.array([[-self._described(subject)[joint]], [largest]])

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import INERTIAL
@@ -63,32 +64,17 @@ class JointSpring(JointTorque):
         "several postures": INERTIAL,
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Shares of what the joint is made for.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """Shares of what the joint is made for."""
         shares = np.array([STIFFNESS, TORQUE])
         return {
             joint: shares * s
             for joint, s in zip(subject.joints, joint_strength(subject), strict=True)
         }
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     def _torque(
@@ -97,17 +83,8 @@ class JointSpring(JointTorque):
         rest = signals.subject.default[joint]
         return stiffness * (signals.position[:, joint] - rest) + preload
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         values = np.asarray(values, float)
         return Spring(
             location,
@@ -116,28 +93,15 @@ class JointSpring(JointTorque):
             float(subject.default[subject.joints.index(location)]),
         )
 
+    @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the torque that the joint is made for.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Usual distances from the nulls `(parameters,)`.
-        """
+        """A share of the torque that the joint is made for."""
         return np.full(2, SHARE * joint_strength(subject)[subject.joints.index(location)])
 
+    @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """Less stiff than the model's springs by no more than these; preload up to the torque that
         the joint is made for.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Least and largest values `(2, parameters)`.
         """
         joint = subject.joints.index(location)
         strength = joint_strength(subject)[joint]
@@ -149,33 +113,18 @@ class JointSpring(JointTorque):
             ]
         )
 
+    @override
     def derived(
         self, location: str, values: np.ndarray, subject: Subject
     ) -> dict[str, tuple[float, str]]:
-        """Angle at which it rests.
-
-        Args:
-            location: one of `locations`.
-            values: of the parameters `(parameters,)`.
-            subject: the robot.
-
-        Returns:
-            Quantities by name, each with its unit.
-        """
+        """Angle at which it rests."""
         stiffness, preload = values
         default = float(subject.default[subject.joints.index(location)])
         return {"rest": (default - float(preload) / float(stiffness), "rad")} if stiffness else {}
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """A spring, and a bare preload either way.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
-        """
+        """A spring, and a bare preload either way."""
         usual = self.usual(location, signals.subject)
         return np.array([[usual[0], 0.0], [0.0, usual[1]], [0.0, -usual[1]]])
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import CALIBRATED
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
@@ -56,43 +57,22 @@ class LoadDependentFriction(JointTorque):
         "known payload": FRICTION,
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the torque, at every joint.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """A share of the torque, at every joint."""
         return dict.fromkeys(self.locations(subject), np.array([USUAL]))
 
+    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Joints that some motor moves.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
+        """Joints that some motor moves."""
         return tuple(
             name
             for name, row in zip(subject.joints, subject.joint_from_motor, strict=True)
             if row.any()
         )
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         loaded = motion.reversing & motion.swinging
         lacking = "no joint reverses under different loads"
         return at_joints(self.identifier, motion, loaded, "reverses under different loads", lacking)
@@ -105,29 +85,14 @@ class LoadDependentFriction(JointTorque):
         )
         return coefficient * (np.abs(load) * sliding(signals)[:, joint])
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         return JointFriction(location, share=np.asarray(values, float)[..., 0])
 
+    @override
     def torque_slope(self, signals: Signals, motor: int, joint: int) -> np.ndarray:
-        """Compute how the factor falls where the joint moves as it is driven, and rises where not.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            motor: index of the motor that gives the torque.
-            joint: index of the joint that it moves most.
-
-        Returns:
-            The slope, `(t,)`.
+        """Compute how the factor falls where the joint moves as it is driven, and rises
+        where not.
         """
         load = applied(signals.subject.joint_from_motor[joint : joint + 1], signals.believed)[:, 0]
         return -(np.sign(np.nan_to_num(load)) * sliding(signals)[:, joint])

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import SLOW, Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.joints.friction import JointFriction
@@ -67,30 +68,15 @@ class StribeckFriction(JointTorque):
         ),
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the model's friction, and of what the joint is made for.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """A share of the model's friction, and of what the joint is made for."""
         spreads = OF_FRICTION * subject.coulomb + 0.3 * COULOMB_LEAST * joint_strength(subject)
         rest = np.zeros(len(self.parameters) - 1)
         return {joint: np.append(s, rest) for joint, s in zip(subject.joints, spreads, strict=True)}
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         slow = motion.reversing & (motion.slow > SLOW)
         lacking = "no slow motion: breakaway is passed in a few ticks"
         return at_joints(self.identifier, motion, slow, "slow and fast motion", lacking)
@@ -101,32 +87,16 @@ class StribeckFriction(JointTorque):
         fall = np.exp(-((signals.velocity[:, joint] / np.maximum(speed, 1e-6)) ** 2))
         return torque * fall * sliding(signals)[:, joint]
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         values = np.asarray(values, float)
         return JointFriction(
             location, breakaway=values[..., 0], speed=np.maximum(values[..., 1], 1e-6)
         )
 
+    @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the torque that the joint is made for.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Usual distances from the nulls `(parameters,)`.
-        """
+        """A share of the torque that the joint is made for."""
         return np.array(
             [
                 SHARE * joint_strength(subject)[subject.joints.index(location)],
@@ -134,41 +104,20 @@ class StribeckFriction(JointTorque):
             ]
         )
 
+    @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Excess no larger than the torque that the joint is made for.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Least and largest values `(2, parameters)`.
-        """
+        """Excess no larger than the torque that the joint is made for."""
         found = super().bounds(location, subject)
         found[1, 0] = min(found[1, 0], joint_strength(subject)[subject.joints.index(location)])
         return found
 
+    @override
     def steps(self, location: str, subject: Subject) -> np.ndarray:
-        """Small against the least Stribeck speed.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            The steps `(parameters,)`.
-        """
+        """Small against the least Stribeck speed."""
         return np.array([0.1 * self.usual(location, subject)[0], 0.1 * self.parameters[1].low])
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """The usual excess at several Stribeck speeds.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
-        """
+        """The usual excess at several Stribeck speeds."""
         usual = self.usual(location, signals.subject)[0]
         return np.array([[usual, speed] for speed in (0.03, 0.1, 0.3)])

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import FRICTION, LATE
@@ -58,29 +59,14 @@ class ViscousFriction(DescribedFriction):
         "controller_gain": "drives off: no back-EMF, no damping gain",
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the model's friction, and of what the joint is made for.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """A share of the model's friction, and of what the joint is made for."""
         spreads = OF_FRICTION * subject.viscous + OF_STRENGTH * joint_strength(subject)
         return {joint: np.array([s]) for joint, s in zip(subject.joints, spreads, strict=True)}
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         varied = motion.reversing & (motion.spread > SPEED_SPREAD)
         lacking = "one speed only: viscous and Coulomb friction look alike"
         return at_joints(self.identifier, motion, varied, "speeds differ", lacking)
@@ -88,17 +74,9 @@ class ViscousFriction(DescribedFriction):
     def _torque(self, signals: Signals, joint: int, damping: np.ndarray) -> np.ndarray:
         return damping * signals.velocity[:, joint]
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`; what is taken away never exceeds the model's.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
+        """What is taken away never exceeds the model's."""
         joint = subject.joints.index(location)
         return JointFriction(
             location, viscous=np.maximum(np.asarray(values, float)[..., 0], -subject.viscous[joint])

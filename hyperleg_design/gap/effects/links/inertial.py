@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.effect import Effect
@@ -45,41 +46,21 @@ class InertialEffect(Effect):
 
     kind: ClassVar[str] = "link"
 
+    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Moving links, one of those that move as one body.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
+        """Moving links, one of those that move as one body."""
         tree = subject.tree
         carriers = tree.link_joint.tolist()
         return tuple(name for i, name in enumerate(tree.links) if carriers[i] not in carriers[:i])
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
+    @override
     def place(self, location: str, subject: Subject) -> str:
         """The link that is meant; any moving link will do, or a joint, for the link that it
         carries.
-
-        Args:
-            location: name of the place, as people may write it.
-            subject: the robot.
-
-        Returns:
-            The location.
         """
         tree = subject.tree
         return (
@@ -94,18 +75,8 @@ class InertialEffect(Effect):
         the link's frame.
         """
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         tree = signals.subject.tree
         link = tree.link(location)
         added = self.added(tree.link_inertial[link], np.atleast_2d(np.asarray(values, float)))
@@ -121,17 +92,8 @@ class InertialEffect(Effect):
             )
         return found
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         tree = subject.tree
         link = tree.link(location)
         values = np.asarray(values, float)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.links.inertial import InertialEffect, fitted
@@ -47,16 +48,9 @@ class LinkCom(InertialEffect):
         "several postures": INERTIAL,
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the distance of the centre of mass from the joint.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """A share of the distance of the centre of mass from the joint."""
         spreads = {}
         for link in self.locations(subject):
             own = subject.tree.link_inertial[subject.tree.link(link)]
@@ -64,31 +58,18 @@ class LinkCom(InertialEffect):
             spreads[link] = np.full(3, OF_ARM * arm)
         return spreads
 
+    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Moving links that have a mass.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
+        """Moving links that have a mass."""
         return tuple(
             name
             for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True)
             if own[0] > 0
         )
 
+    @override
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Of the moved link less the link, see `InertialEffect.added`.
-
-        Args:
-            own: inertial parameters of the link `(10,)`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            What is added to the inertial parameters `(k, 10)`.
-        """
+        """Of the moved link less the link."""
         mass, com, inertia = mass_properties(own)
         return np.stack(
             [
@@ -98,16 +79,10 @@ class LinkCom(InertialEffect):
             ]
         )
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The shift that a linear fit of the first moment to the log finds, and the usual one along
         each axis.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
         """
         tree, usual = signals.subject.tree, self.usual(location, signals.subject)
         low, high = self.bounds(location, signals.subject)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.links.inertial import InertialEffect, least_mass
 from hyperleg_design.gap.effects.parameter import Parameter
@@ -47,88 +48,45 @@ class LinkMass(InertialEffect):
         "several postures": frozenset({"payload"}),
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the link's mass.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """A share of the link's mass."""
         tree = subject.tree
         return {
             link: np.array([DRAWN * tree.link_inertial[tree.link(link), 0]])
             for link in self.locations(subject)
         }
 
+    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Moving links that have a mass.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
+        """Moving links that have a mass."""
         return tuple(
             name
             for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True)
             if own[0] > 0
         )
 
+    @override
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """A share of all of the link's parameters, see `InertialEffect.added`.
-
-        Args:
-            own: inertial parameters of the link `(10,)`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            What is added to the inertial parameters `(k, 10)`.
-        """
+        """A share of all of the link's parameters."""
         return values[:, :1] / own[0] * own if own[0] > 0 else np.zeros((len(values), 10))
 
+    @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the link's own mass.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Usual distances from the nulls `(parameters,)`.
-        """
+        """A share of the link's own mass."""
         tree = subject.tree
         return np.array([max(SHARE * tree.link_inertial[tree.link(location), 0], 1e-3)])
 
+    @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Some of the link is left.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Least and largest values `(2, parameters)`.
-        """
+        """Some of the link is left."""
         found = super().bounds(location, subject)
         found[0, 0] = max(found[0, 0], least_mass(subject, location))
         return found
 
+    @override
     def size_odds(
         self, values: np.ndarray, usual: np.ndarray, declared: float, beyond: int
     ) -> float:
-        """Against most of the link's own mass: rather something hangs there.
-
-        Args:
-            values: of the parameters `(1,)` [kg].
-            usual: their usual sizes `(1,)` [kg].
-            declared: payload that the logs declare at the place [kg].
-            beyond: joints in a row that the link carries.
-
-        Returns:
-            The log odds [nat].
-        """
+        """Against most of the link's own mass: rather something hangs there."""
         return -HEAVIER * max(abs(float(values[0])) * SHARE / float(usual[0]) - LARGEST_ERROR, 0.0)

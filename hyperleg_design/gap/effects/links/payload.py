@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.links.inertial import (
     InertialEffect,
@@ -80,16 +81,9 @@ class Payload(InertialEffect):
         ),
     )
 
+    @override
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Of the body, see `InertialEffect.added`.
-
-        Args:
-            own: inertial parameters of the link `(10,)`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            What is added to the inertial parameters `(k, 10)`.
-        """
+        """Of the body."""
         mass, (x, y, z, own_inertia) = values[:, 0], values[:, 1:].T
         inertia = (
             y * y + z * z + own_inertia,
@@ -101,47 +95,26 @@ class Payload(InertialEffect):
         )
         return mass[:, None] * np.stack([np.ones_like(x), x, y, z, *inertia], -1)
 
+    @override
     def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """As that of a link's own mass: what is no heavier may be part of it.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """As that of a link's own mass: what is no heavier may be part of it."""
         tree, size = subject.tree, np.eye(len(self.parameters))[0]
         return {
             link: DRAWN * tree.link_inertial[tree.link(link), 0] * size
             for link in self.locations(subject)
         }
 
+    @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the mass that moves with the link.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Usual distances from the nulls `(parameters,)`.
-        """
+        """A share of the mass that moves with the link."""
         found = super().usual(location, subject)
         found[0] = max(SHARE * carried_mass(subject, location), 0.01)
         return found
 
+    @override
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
         """At half as far again from the link's origin as its own centre of mass; a load at a
         joint's axis is hardly felt.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-            size: over the usual distance from the nulls.
-
-        Returns:
-            Values `(parameters,)`.
         """
         found = super().example(location, subject, size)
         own = subject.tree.link_inertial[subject.tree.link(location)]
@@ -150,31 +123,17 @@ class Payload(InertialEffect):
             found[4] = 0.0
         return found
 
+    @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Some of the link is left.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Least and largest values `(2, parameters)`.
-        """
+        """Some of the link is left."""
         found = super().bounds(location, subject)
         found[0, 0] = max(found[0, 0], least_mass(subject, location))
         return found
 
+    @override
     def odds(self, location: str, subject: Subject, values: np.ndarray) -> float:
         """Against a load out of the link's reach: what bends a motion like a pole with a weight is
         rather no load.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-            values: of the parameters `(parameters,)`.
-
-        Returns:
-            The log odds [nat].
         """
         own = subject.tree.link_inertial[subject.tree.link(location)]
         near = NEAR * subject.tree.length
@@ -183,34 +142,19 @@ class Payload(InertialEffect):
         away = float(np.sqrt(values[1:4] @ values[1:4] + values[4]))
         return -FAR if near > 0 and away > near else 0.0
 
+    @override
     def size_odds(
         self, values: np.ndarray, usual: np.ndarray, declared: float, beyond: int
     ) -> float:
-        """Against a load that weighs less than nothing, and one far from the ends of the robot.
-
-        Args:
-            values: of the parameters `(k,)`.
-            usual: their usual sizes `(k,)`.
-            declared: payload that the logs declare at the place [kg].
-            beyond: joints in a row that the link carries.
-
-        Returns:
-            The log odds [nat].
-        """
+        """Against a load that weighs less than nothing, and one far from the ends of the robot."""
         return -(
             NEGATIVE * (values[0] < -declared) + INWARD * (beyond > 1) - OUTERMOST * (beyond == 0)
         )
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """The mass and first moment that a linear fit to the log finds, and the usual mass where
         `example` has it.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
         """
         low, high = self.bounds(location, signals.subject)
         shown = self.example(location, signals.subject)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import INERTIAL
@@ -62,44 +63,19 @@ class EncoderOffset(JointEffect):
         "link_com": "several postures",
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """An angle, at every joint.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """An angle, at every joint."""
         spreads = np.zeros(len(self.parameters))
         spreads[0] = USUAL
         return dict.fromkeys(self.locations(subject), spreads)
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         joint = signals.subject.joints.index(location)
         offset = np.atleast_2d(np.asarray(values, float))[:, 0]
         turns = signals.subject.tree.hinge[joint]
@@ -115,17 +91,8 @@ class EncoderOffset(JointEffect):
         found["motion"][..., joint] -= signals.subject.spring[joint] * offset[:, None]
         return found
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         return ShiftedEncoder(location, np.asarray(values, float)[..., 0])
 
 

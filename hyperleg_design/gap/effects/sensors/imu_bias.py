@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
@@ -55,55 +56,24 @@ class ImuBias(Effect):
         "rest level": INERTIAL | {"encoder_offset", "joint_spring"},
     }
 
+    @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Of gyro and accelerometer.
-
-        Args:
-            subject: the robot.
-            step: of its logs [s].
-
-        Returns:
-            Standard deviations from the nulls by location `(parameters,)`.
-        """
+        """Of gyro and accelerometer."""
         return dict.fromkeys(self.locations(subject), np.repeat([GYRO, ACCELEROMETER], 3))
 
+    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """The sensor, on a floating base.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Names of the places; empty where it can sit nowhere on this robot.
-        """
+        """The sensor, on a floating base."""
         return (IMU,) if subject.floating else ()
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         known = tuple(k for k in ("gyro", "accelerometer") if log.has(k, "x"))
         why = "inertial data" if known else "no gyroscope and no accelerometer"
         return Excitation(self.identifier, bool(known), known, why)
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         subject, base = signals.subject, signals.base
         values = np.atleast_2d(np.asarray(values, float))
         if base is None:
@@ -136,17 +106,8 @@ class ImuBias(Effect):
                 base_rows.append(rigid.base_wrench(subject, *motion, true) - wrench)
         return {"motion": rows} | ({"base": np.stack(base_rows)} if base_rows else {})
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         values = np.asarray(values, float)
         turned = subject.imu_rotation.T
         return BiasedImu(values[..., :3] @ turned, values[..., 3:] @ turned)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import (
     FEW,
@@ -58,32 +59,14 @@ class Backlash(MotorEffect):
         "log rotor speeds": BESIDE_TRANSMISSIONS,
     }
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         return by_speeds(self.identifier, log, motion) or at_joints(
             self.identifier, motion, motion.reversing, REVERSES, FEW
         )
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         motor = signals.subject.motors.index(location)
         angle, side, coasting, behind = np.atleast_2d(np.asarray(values, float)).T
         moved = slack.slack(
@@ -91,18 +74,9 @@ class Backlash(MotorEffect):
         )
         return belt.trace(signals, motor, moved, side, behind=behind)
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`; its ends are as hard as simulations resolve, and damped to
-        bounce as in the trace.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
+        """Its ends are as hard as simulations resolve, and damped to bounce as in the trace."""
         motor = subject.motors.index(location)
         bounce = np.log(slack.RESTITUTION)
         damping = (
@@ -122,28 +96,17 @@ class Backlash(MotorEffect):
             side=values[..., 1],
         )
 
+    @override
     def fixed(self, values: np.ndarray) -> np.ndarray:
         """Where encoders sit and joints rub; encoders on the rotors, joints always move by
         themselves.
-
-        Args:
-            values: of the parameters `(parameters,)`.
-
-        Returns:
-            Whether each parameter stays `(parameters,)` of bool.
         """
         return np.array([False, True, values[1] >= belt.CHOSEN, True])
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Small and large angles, with encoders on either side, or carried over; where ends are met
         depends on the angle.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
         """
         rotors = [[angle, 0.0, 1.0, 0.0] for angle in (0.003, 0.01, 0.03)]
         joints = [

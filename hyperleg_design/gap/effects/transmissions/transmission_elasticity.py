@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints, by_speeds
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
@@ -89,61 +90,28 @@ class TransmissionElasticity(MotorEffect):
         "command_delay": "a chirp past 8 Hz",
     }
 
+    @override
     def noise_inertia(self, location: str, subject: Subject, values: np.ndarray) -> float | None:
-        """The rotor's, where encoders are at the joints, see `Effect.noise_inertia`.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-            values: of the parameters `(parameters,)`.
-
-        Returns:
-            The inertia [kg m^2]; None where encoders are at the rotors.
-        """
+        """The rotor's, where encoders are at the joints."""
         side = float(values[SIDE])
         if side >= belt.CHOSEN:
             return None
         return machine.rotor(subject, subject.motors.index(location)) * (1 - side)
 
+    @override
     def holds_torque(self, values: np.ndarray) -> bool:
-        """Of belts that are stretched by `belt.given`, see `Effect.holds_torque`.
-
-        Args:
-            values: of the parameters `(parameters,)`.
-
-        Returns:
-            Whether it does.
-        """
         return bool(values[SIDE] >= belt.CHOSEN and (values[3] >= belt.CHOSEN or values[4] > 0))
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         good = f"motion reaches past {TELLING:.0f} Hz"
         lacking = f"motion holds nothing above {TELLING:.0f} Hz: looks like delay"
         return by_speeds(self.identifier, log, motion) or at_joints(
             self.identifier, motion, motion.content > TELLING, good, lacking
         )
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         motor = signals.subject.motors.index(location)
         compliance, damping_ratio, side, behind, stiffening = np.atleast_2d(
             np.asarray(values, float)
@@ -164,17 +132,8 @@ class TransmissionElasticity(MotorEffect):
         )
         return belt.trace(signals, motor, moved, side, seen, behind)
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """Make what adds it to a simulation, see `Effect.alteration`.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
         values = np.asarray(values, float)
         compliance, ratio = values[..., 0], values[..., 1]
         inertia = machine.rotor(subject, subject.motors.index(location))
@@ -184,57 +143,32 @@ class TransmissionElasticity(MotorEffect):
             location, compliance=compliance, damping=damping, side=values[..., 2], stiffening=bend
         )
 
+    @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """Compliance at which the rotor rings at the usual frequency.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Usual distances from the nulls `(parameters,)`.
-        """
+        """Compliance at which the rotor rings at the usual frequency."""
         found = super().usual(location, subject)
         found[0] = self._compliance(RESONANCE, location, subject)
         return found
 
+    @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """No softer than a rotor that rings at half a hertz.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-
-        Returns:
-            Least and largest values `(2, parameters)`.
-        """
+        """No softer than a rotor that rings at half a hertz."""
         found = super().bounds(location, subject)
         found[1, 0] = min(found[1, 0], self._compliance(SLOWEST, location, subject))
         return found
 
+    @override
     def fixed(self, values: np.ndarray) -> np.ndarray:
         """Where joints rub; of a belt that stiffens, or with joints that rub behind it, where
         encoders sit; else it is straight.
-
-        Args:
-            values: of the parameters `(parameters,)`.
-
-        Returns:
-            Whether each parameter stays `(parameters,)` of bool.
         """
         behind, stiffens = values[3] >= belt.CHOSEN, values[4] > 0
         return np.array([False, False, behind or stiffens, True, not (behind or stiffens)])
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Several resonances, with encoders on either side, and with joints that rub behind a belt,
         which may stiffen.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
         """
         stiff = [self._compliance(frequency, location, signals.subject) for frequency in RESONANCES]
         plain = [[c, DAMPING_RATIO, side, 0.0, 0.0] for side in (0.0, 1.0) for c in stiff]
@@ -245,19 +179,11 @@ class TransmissionElasticity(MotorEffect):
         ]
         return np.array(plain + bent)
 
+    @override
     def derived(
         self, location: str, values: np.ndarray, subject: Subject
     ) -> dict[str, tuple[float, str]]:
-        """Stiffness on the motor's side, and the frequency of the rotor on its belt.
-
-        Args:
-            location: one of `locations`.
-            values: of the parameters `(parameters,)`.
-            subject: the robot.
-
-        Returns:
-            Quantities by name, each with its unit.
-        """
+        """Stiffness on the motor's side, and the frequency of the rotor on its belt."""
         stiffness = 1 / values[0] if values[0] > 0 else np.inf
         inertia = machine.rotor(subject, subject.motors.index(location))
         return {

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, by_speeds
 from hyperleg_design.gap.effects.families import (
@@ -75,16 +76,8 @@ class TransmissionRatio(MotorEffect):
         "log rotor speeds": BESIDE_TRANSMISSIONS | {"transmission_elasticity", "backlash"},
     }
 
+    @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Decide whether a log can show it, see `Effect.excited`.
-
-        Args:
-            log: as it was read.
-            motion: facts of it.
-
-        Returns:
-            Whether the log can show it, where, and why or why not.
-        """
         if (shown := by_speeds(self.identifier, log, motion)) is not None:
             return shown
         passed = motion.torque & motion.swinging
@@ -95,18 +88,8 @@ class TransmissionRatio(MotorEffect):
         )
         return Excitation(self.identifier, bool(passed.any()), tuple(motion.joints[passed]), why)
 
+    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Compute the residual that it leaves, see `Effect.trace`.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-            values: `(k, parameters)`, k settings at once.
-
-        Returns:
-            By name of the residual `(k, t, rows)` [Nm; N in the ground residual]; residuals that it
-            leaves alone are missing.
-        """
         subject = signals.subject
         motor = subject.motors.index(location)
         scale, side = np.atleast_2d(np.asarray(values, float)).T[..., None]
@@ -126,30 +109,15 @@ class TransmissionRatio(MotorEffect):
             found[residual_name] = found[residual_name] + more if residual_name in found else more
         return found
 
+    @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """See `Effect.alteration`; the controller keeps computing with the model's.
-
-        Args:
-            location: one of `locations`.
-            values: `(parameters,)`, or `(n, parameters)`, one row a simulation.
-            subject: the robot.
-
-        Returns:
-            What adds it to a simulation.
-        """
+        """The controller keeps computing with the model's."""
         values = np.asarray(values, float)
         return ScaledRatio(location, values[..., 0], values[..., 1])
 
+    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Longer and shorter, with encoders on either side.
-
-        Args:
-            signals: a conditioned log, `t` ticks.
-            location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
-        """
+        """Longer and shorter, with encoders on either side."""
         return np.array([[1.05, 0.0], [0.95, 0.0], [1.05, 1.0], [0.95, 1.0]])
 
 
@@ -208,15 +176,9 @@ class ScaledRatio(Alteration):
     side: Any = 0.0
     """`()` or `(n,)` each [-]."""
 
+    @override
     def machine(self, machine: Machine) -> Machine:
-        """With the other M.
-
-        Args:
-            machine: the machine that the robot is to its drives.
-
-        Returns:
-            The changed machine.
-        """
+        """With the other M."""
         scale = np.asarray(self.scale, float)[..., None]
         old = np.asarray(machine.joint_from_motor)
         place = machine.motor(self.motor)
