@@ -40,7 +40,7 @@ def trial(
     seed: int = 0,
     alterations: Alterations | None = None,
 ) -> dict[str, float]:
-    """Try a policy from standing: on the test's speed, or on the task's courses.
+    """Try a policy from standing: on the test's speed, or on the first of the task's courses.
 
     Args:
         design: the robot; or a batch of designs, each tried equally often.
@@ -131,7 +131,8 @@ def _course(
 ) -> dict[str, float]:
     limits = dataclasses.replace(task.limits, duration=2 * COURSE)
     given: Any = task.commands
-    task = task.changed(commands=dataclasses.replace(given, course_share=1.0), limits=limits)
+    first = dataclasses.replace(given, course_share=1.0, courses=given.courses[:1])
+    task = task.changed(commands=first, limits=limits)
     environment = Environment(
         design, task, simulations=simulations, seed=seed, threads=1, alterations=alterations
     )
