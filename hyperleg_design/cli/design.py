@@ -14,7 +14,7 @@ from hyperleg_design import __version__, resources
 from hyperleg_design.cli.arguments import AtLeast
 from hyperleg_design.cli.output import Printing, emit
 from hyperleg_design.robot.described import RobotDesign
-from hyperleg_design.robot.load import load_robot, walker
+from hyperleg_design.robot.load import load_robot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -200,9 +200,11 @@ class Compare(Printing):
     demand: bool = False
     """Add what a planned walk at 1.33 m/s asks of each (seconds a design)."""
     evaluate: tyro.conf.UseAppendAction[tuple[Literal["walk", "t_test"], ...]] = ()
-    """Add what the shipped policies do on each under this protocol (a minute a design)."""
+    """Add what trained policies do on each under this protocol (a minute a design)."""
     seeds: Annotated[int, AtLeast(1)] = 3
     """Trainings of each design that are evaluated, at most."""
+    policies: Path | None = None
+    """Folder of trainings; the shipped policies by default."""
     swap: Literal["", "lock_toe", "toe_motor_alone", "toe_motor_to_ankle"] = ""
     """With --evaluate: change of the toe that the policies were not trained for."""
 
@@ -215,9 +217,10 @@ class Compare(Printing):
         ]
         measures = comparison.compare(designs, demand=self.demand)
         walks = comparison.compare_walks(
-            [walker(d, "compare --evaluate") for d in designs] if self.evaluate else [],
+            designs,
             self.evaluate,
             seeds=self.seeds,
+            policies=self.policies,
             swap=self.swap,
         )
         for protocol, entries in walks.items():
@@ -245,7 +248,7 @@ class Sweep(Printing):
     """Protocols to run on every design: walk, t_test, or YAML files; those that the sweep names by
     default."""
     seeds: Annotated[int, AtLeast(1)] = 3
-    """Trainings of each toe layout whose policies are evaluated, at most."""
+    """Trainings of the robot, or of each toe layout, whose policies are evaluated, at most."""
     policies: Path | None = None
     """Folder of trainings; the shipped policies by default."""
     batch: Annotated[int, AtLeast(1)] = 16
@@ -265,8 +268,6 @@ class Sweep(Printing):
 
         sweep, show = load_sweep(self.file), not self.json
         protocols = self.evaluate or sweep.evaluated
-        if protocols:
-            walker(sweep.base, "sweep run --evaluate")
         wanted = plan(sweep, protocols, seeds=self.seeds, policies=self.policies)
         with cluster(self.scheduler) as executor:
             result = run_sweep(

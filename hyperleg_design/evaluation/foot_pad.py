@@ -24,7 +24,7 @@ from hyperleg_design.simulation.layout import layout_of
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.rollout import Trial
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class FootPad:
         return float(np.sqrt(mass / self.stiffness) / self.damping_ratio)
 
 
-def pad_of_contact(design: Design, mass: float, time_constant: float | None = None) -> FootPad:
+def pad_of_contact(design: RobotDesign, mass: float, time_constant: float | None = None) -> FootPad:
     """Compute the foot pad that a design's contact settings stand for.
 
     Args:
@@ -89,7 +89,7 @@ def pad_of_contact(design: Design, mass: float, time_constant: float | None = No
     """
     if not mass > 0:
         raise InputError("foot pad", "mass", mass, "expects a positive mass [kg]")
-    contact = design.contact
+    contact = design.contact_section
     constant = float(contact.time_constant if time_constant is None else time_constant)
     thickness = float(contact.pad_radius)
     area = heel_area(design)
@@ -97,7 +97,7 @@ def pad_of_contact(design: Design, mass: float, time_constant: float | None = No
     return FootPad(stiffness * thickness / area, thickness, area, float(contact.damping_ratio))
 
 
-def heel_area(design: Design) -> float:
+def heel_area(design: RobotDesign) -> float:
     """Compute the area of the sole pads behind the ankle of one foot.
 
     Args:
@@ -108,7 +108,7 @@ def heel_area(design: Design) -> float:
     """
     layout = layout_of(design)
     count = int(np.sum((layout.pad_foot == 0) & (layout.pad_position[:, 0] < 0)))
-    return float(count * np.pi * design.contact.pad_radius**2)
+    return float(count * np.pi * design.contact_section.pad_radius**2)
 
 
 def heel_mass(trial: Trial, samples: Any, feet: Any) -> np.ndarray:

@@ -1,8 +1,8 @@
 """Robustness: what policies do as one condition of their walk moves away from what they know.
 
 Each condition changes one thing over several levels; everything else is the protocol's. Curves are
-means over trainings and trials with intervals (`statistics`), by toe layout, of the share of trials
-that arrive and of the cost of transport of those that did.
+means over trainings and trials with intervals (`statistics`), by toe layout or robot, of the share
+of trials that arrive and of the cost of transport of those that did.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
@@ -21,7 +23,6 @@ from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, WalkPro
 from hyperleg_design.evaluation.result import arrivals_only, by_checkpoint
 from hyperleg_design.evaluation.result_tables import trial_table
 from hyperleg_design.evaluation.shipped import check_different, find_policy
-from hyperleg_design.robot.load import walker
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.surroundings import Slope, TorqueConstants, UnevenFloor
 
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from hyperleg_design.evaluation.statistics import Estimate
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 PUSH_INTERVAL = 2.0
 """Mean time between pushes [s]; assumed."""
@@ -41,7 +42,7 @@ SHOWN = {"walk": ("arrived", "steady_cost_of_transport"), "t_test": ("arrived", 
 class Setting:
     """What one level of a condition changes."""
 
-    design: Callable[[Design], Mapping[str, Any]] | None = None
+    design: Callable[[RobotDesign], Mapping[str, Any]] | None = None
     """Leaves to replace, of a robot."""
     protocol: Mapping[str, Any] = field(default_factory=dict)
     """Fields of the protocol to replace."""
@@ -62,17 +63,40 @@ class Condition:
     setting: Callable[[float], Setting]
     walks_only: bool = False
     """Whether T-tests have no such thing."""
+    missing: Callable[[RobotDesign], str] = lambda design: ""
+    """What a robot lacks for this condition; empty where it has all."""
+
+
+def _payload(mass: float) -> Setting:
+    """A point mass at the centre of mass of the root link, of whose inertia that is declared as
+    radii of gyration it takes its share.
+    """
+
+    def leaves(design: RobotDesign) -> dict[str, Any]:
+        path = f"{design.root_link}.mass"
+        return {path: design[path] + mass} if mass else {}
+
+    return Setting(design=leaves)
+
+
+def _friction_leaves(design: RobotDesign) -> dict[str, Any]:
+    """Coulomb and viscous friction of every joint, by path."""
+    return {
+        path: design[path]
+        for path in design.rules
+        if path.startswith("joints.") and path.endswith((".coulomb", ".viscous"))
+    }
 
 
 def _friction(factor: float) -> Setting:
-    def leaves(design: Design) -> dict[str, Any]:
-        return {
-            f"joints.{name}.{kind}": getattr(joint, kind) * factor
-            for name, joint in vars(design.joints).items()
-            for kind in ("coulomb", "viscous")
-        }
+    def leaves(design: RobotDesign) -> dict[str, Any]:
+        return {path: value * factor for path, value in _friction_leaves(design).items()}
 
     return Setting(design=leaves)
+
+
+def _frictionless(design: RobotDesign) -> str:
+    return "" if any(map(np.any, _friction_leaves(design).values())) else "no friction in any joint"
 
 
 def _pushed(speed: float) -> Setting:
@@ -101,15 +125,12 @@ CONDITIONS: dict[str, Condition] = {
         (0.2, 0.3, 0.4, 0.6, 0.8, 1.0),
         lambda level: Setting(design=lambda design: {"contact.friction": level}),
     ),
-    "payload": Condition(
-        "payload at the pelvis [kg]",
-        (0.0, 2.0, 4.0, 6.0, 8.0),
-        lambda level: Setting(
-            design=lambda design: {"pelvis.mass": design.pelvis.mass + level} if level else {}
-        ),
-    ),
+    "payload": Condition("payload at the root link [kg]", (0.0, 2.0, 4.0, 6.0, 8.0), _payload),
     "joint_friction": Condition(
-        "joint friction over the nominal [-]", (0.8, 0.9, 1.0, 1.1, 1.2), _friction
+        "joint friction over the nominal [-]",
+        (0.8, 0.9, 1.0, 1.1, 1.2),
+        _friction,
+        missing=_frictionless,
     ),
     "torque_constant": Condition(
         "torque constant over the nominal [-]",
@@ -135,34 +156,46 @@ class CurvePoint:
     level: float
     """Of the condition."""
     variant: str
-    """Toe layout."""
+    """Toe layout; of a robot that has none, its name."""
     measure: str
     """One of `SHOWN`."""
     estimate: Estimate
     """Mean over trainings and trials, with its interval."""
 
 
-def conditions_of(names: Sequence[str], protocol: Protocol) -> list[str]:
+def conditions_of(
+    names: Sequence[str], protocol: Protocol, designs: Sequence[RobotDesign] = ()
+) -> list[str]:
     """Choose the conditions that are varied.
 
     Args:
-        names: of conditions; empty for all that the protocol has.
+        names: of conditions; empty for all that the protocol and the robots have.
         protocol: under which the policies run.
+        designs: the robots.
 
     Returns:
         The names of the conditions.
 
     Raises:
-        InputError: no such condition, or one that the protocol does not have.
+        InputError: no such condition, or one that the protocol or a robot does not have.
     """
     runs = isinstance(protocol, TTestProtocol)
+    lacking = {
+        name: f"{design.name} has {missing}"
+        for name, condition in CONDITIONS.items()
+        for design in designs
+        if (missing := condition.missing(design))
+    }
     fitting = [
-        name for name, condition in CONDITIONS.items() if not (runs and condition.walks_only)
+        name
+        for name, condition in CONDITIONS.items()
+        if not (runs and condition.walks_only) and name not in lacking
     ]
     for name in names:
         if name not in fitting:
+            why = f"means nothing here: {lacking[name]}; " if name in lacking else ""
             known = ", ".join(fitting)
-            raise InputError("robustness", "condition", name, f"expects one of {known}")
+            raise InputError("robustness", "condition", name, f"{why}expects one of {known}")
     return list(names) or fitting
 
 
@@ -179,7 +212,7 @@ def robustness(
 
     Args:
         policies: ONNX files or names of shipped trainings, all of one kind of task.
-        conditions: names, of `CONDITIONS`; all that fit the protocol by default.
+        conditions: names, of `CONDITIONS`; all that fit protocol and robots by default.
         protocol: what suits the first policy's task by default.
         levels: of some conditions, in place of their own.
         workers: processes side by side.
@@ -189,17 +222,18 @@ def robustness(
         One row a trial: those of `trial_table`, with `condition` and `level` in front.
 
     Raises:
-        InputError: a policy that cannot be used, the same one twice, or an unknown condition.
+        InputError: a policy that cannot be used, the same one twice, or a condition that is unknown
+            or that protocol or robot does not have.
     """
     import pandas as pd
 
     check_different(map(find_policy, policies), "robustness")
     protocol = protocol or protocol_for(load_policy(policies[0]))
+    designs = [load_policy(policy).design for policy in policies]
     chosen = {
         name: tuple((levels or {}).get(name, CONDITIONS[name].levels))
-        for name in conditions_of(conditions, protocol)
+        for name in conditions_of(conditions, protocol, designs)
     }
-    designs = [walker(load_policy(policy).design, "robustness") for policy in policies]
     count, done, tables = sum(map(len, chosen.values())), 0, []
     for name, values in chosen.items():
         for level in values:
@@ -235,7 +269,9 @@ def curves(table: pd.DataFrame, kind: str = "walk") -> list[CurvePoint]:
         One point for each condition, level, variant and measure.
     """
     points = []
-    for (name, level, variant), part in table.groupby(["condition", "level", "variant"], sort=True):
+    robot = table["variant"].where(table["variant"] != "", table["design"])
+    keys = [table["condition"], table["level"], robot]
+    for (name, level, variant), part in table.groupby(keys, sort=True):
         for measure in SHOWN[kind]:
             values = part
             if measure != "arrived":

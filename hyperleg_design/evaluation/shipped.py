@@ -35,11 +35,6 @@ POLICIES = "policies"
 """Folder of the shipped policies in `sim/`."""
 POLICY, CRITIC, LATE = "policy.onnx", "critic.onnx", "late_*.onnx"
 RUN, PROGRESS = "run.json", "progress.jsonl"
-PREFERRED = {"walk": ("walk_upright", "walk"), "t_test": ("t_test_free", "t_test")}
-"""Groups whose policies stand for a kind of protocol, the best first; other groups of that name's
-beginning come after them."""
-GUIDED = "_guided"
-"""Ending of groups whose policies others only start from; they stand for no protocol."""
 CURVE_ROWS = 200
 """Rows of a packed learning curve."""
 CURVE = ("steps", "stage", "assist", "reward", "speed", "falls", "cost_of_transport")
@@ -162,43 +157,6 @@ def check_different(paths: Iterable[str | Path], where: str = "policies") -> Non
                 f"is the same policy as {twin.parent.name}/{twin.name}; a training counts once",
             )
         seen[digest] = path
-
-
-def policies_for(
-    kind: str, variant: str, seeds: int, folder: str | Path | None = None
-) -> list[Shipped]:
-    """List the last policies of the first trainings for a kind of protocol and a toe layout.
-
-    Args:
-        kind: of protocol, `walk` or `t_test`; a group's own name chooses that group.
-        variant: ablation of the design.
-        seeds: most trainings.
-        folder: of trainings; the shipped ones by default.
-
-    Returns:
-        One policy for each seed, all of one group.
-
-    Raises:
-        InputError: there is none.
-    """
-    known = shipped_policies(folder, late=False)
-    groups = [
-        p.group
-        for p in known
-        if p.design == variant
-        and (p.group == kind or (p.group.startswith(kind) and not p.group.endswith(GUIDED)))
-    ]
-    best = PREFERRED.get(kind, (kind,))
-    if not groups:
-        have = ", ".join(sorted({f"{policy.group}-{policy.design}" for policy in known})) or "none"
-        raise InputError(
-            "policies",
-            "",
-            f"{kind}-{variant}",
-            f"no policy was trained for this task and toe layout; there are {have}",
-        )
-    group = next((name for name in best if name in groups), groups[0])
-    return [p for p in known if (p.group, p.design) == (group, variant)][:seeds]
 
 
 def find_policy(name: str | Path, where: str = "policy") -> Path:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 class RobotDesign:
     """A robot of any family, or a batch of robots that differ in numbers and motors only."""
 
+    family: ClassVar[str] = "hyperleg"
+    """Name of the family, as `family:` in a file says it."""
     name: str
     variant: str = ""
     """Ablation that made it; informative."""
@@ -81,6 +83,15 @@ class RobotDesign:
     def stop_section(self) -> Any:
         """Stops at the ends of the joints' ranges."""
         return getattr(self, "stops")  # noqa: B009
+
+    @property
+    def root_link(self) -> str:
+        """Path of the section of the link that all others hang from, which has a mass.
+
+        Raises:
+            NotImplementedError: in this class; each family of designs has its own answer.
+        """
+        raise NotImplementedError
 
     @property
     def rules(self) -> Mapping[str, Rule]:

@@ -66,6 +66,11 @@ class HyperLeg(RobotDesign):
         return SIDES
 
     @property
+    def root_link(self) -> str:
+        """Path of the section of the pelvis."""
+        return "pelvis"
+
+    @property
     def joint_sections(self) -> dict[str, Any]:
         """Joints that move, by name: all seven, or without the toe where that is locked."""
         names = JOINTS[:-1] if self.toe.joint == "locked" else JOINTS

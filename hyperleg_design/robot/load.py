@@ -87,27 +87,18 @@ def changed_robot(
     return tree.with_values(chosen, "--set") if chosen else tree
 
 
-def walker(design: RobotDesign, what: str) -> Design:
-    """Check that a design is of HyperLeg's family.
+def design_argument(design: RobotDesign) -> str:
+    """Name a design as `--design` takes it.
 
     Args:
-        design: a robot of any family.
-        what: that needs one, for the error.
+        design: a robot or batch.
 
     Returns:
-        The same design.
-
-    Raises:
-        InputError: it is of another family.
+        The name of a shipped design, else the name of the file that it was read from.
     """
-    if not isinstance(design, Design):
-        raise InputError(
-            what,
-            "",
-            design.name,
-            "writes its tree out; this needs a design of HyperLeg's family, such as hyperleg",
-        )
-    return design
+    if design.name in resources.names("descriptions") or not design.source:
+        return design.name
+    return Path(design.source).name
 
 
 def robot_from_mapping(data: Mapping[str, Any], where: str) -> RobotDesign:
@@ -168,7 +159,8 @@ def _read(path: Path, seen: tuple[Path, ...] = ()) -> TreeDesign:
     base = _read(_base(path, str(data["base"])), (*seen, path.resolve()))
     rest = {k: v for k, v in data.items() if k not in ("base", "family", "name", "description")}
     design = _overlaid(base, rest, where)
-    return dataclasses.replace(design, name=name, source=where)
+    bases = (base.name, *base.bases)
+    return dataclasses.replace(design, name=name, source=where, bases=bases)
 
 
 def _overlaid(design: TreeDesign, data: Mapping[str, Any], where: str) -> TreeDesign:

@@ -25,13 +25,14 @@ from typing_extensions import override
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.ablation import states
+from hyperleg_design.robot.hyperleg import HyperLeg
 from hyperleg_design.robot.names import LAYOUTS, SIDES
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 from hyperleg_design.simulation.drives.actuation import motor_from_joint
 from hyperleg_design.simulation.drives.machine import Machine
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 LOCK = 1e5
 """Damping that holds a locked toe [Nms/rad]; assumed, see the module."""
@@ -121,7 +122,8 @@ class Swap:
     """Makes a swap's alterations for a design, as evaluations take them.
 
     Raises:
-        InputError: no such swap; when called, a design whose toe does not fit it.
+        InputError: no such swap; when called, a design whose toe does not fit it, or a robot that
+            is no HyperLeg.
     """
 
     name: str
@@ -131,8 +133,11 @@ class Swap:
         if self.name not in SWAPS:
             raise InputError("swap", "", self.name, f"expects one of {', '.join(SWAPS)}")
 
-    def __call__(self, design: Design) -> tuple[Alteration, ...]:
+    def __call__(self, design: RobotDesign) -> tuple[Alteration, ...]:
         """Alterations of one robot."""
+        if not isinstance(design, HyperLeg):
+            remedy = "is no HyperLeg, whose toe the swap is of; leave the swap out"
+            raise InputError(f"swap {self.name}", "design", design.name, remedy)
         active = (design.toe.joint, bool(design.actuators.toe_installed)) == states("toe")
         fits = active if self.name in NEEDS_ACTIVE else not design.actuators.toe_installed
         if not fits:

@@ -19,7 +19,6 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.protocol import MOST_TRIALS, Protocol, protocol_mapping
-from hyperleg_design.robot.load import walker
 from hyperleg_design.sweep.fine_tuning import FineTuning, check_trainable, fine_tune
 from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.plain_values import plain_values
@@ -32,6 +31,8 @@ from hyperleg_design.writing import write_json
 if TYPE_CHECKING:
     import optuna
     import pandas as pd
+
+    from hyperleg_design.robot.described import RobotDesign
 
 FINALISTS = 3
 """Number of finalists by default."""
@@ -280,9 +281,8 @@ def _values(search: Search, row: Row) -> dict[str, np.ndarray]:
     return {axis.name: np.array([row[axis.name]]) for axis in search.sweep.axes}
 
 
-def _design(search: Search, row: Row) -> Any:
-    design = search.sweep.design(_values(search, row), row["variant"])
-    return walker(design, "finalists").take(0)
+def _design(search: Search, row: Row) -> RobotDesign:
+    return search.sweep.design(_values(search, row), row["variant"]).take(0)
 
 
 def _evaluated(

@@ -30,7 +30,7 @@ from hyperleg_design.writing import write_text
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.policy import OnnxPolicy
-    from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.described import RobotDesign
 
 NEEDS = ("torch", "rsl_rl")
 """Modules of the extra `learning`, without which nothing can be trained."""
@@ -51,7 +51,7 @@ class FineTuning:
 
     policy: Path
     """ONNX file to start from."""
-    design: Design
+    design: RobotDesign
     """The design, one robot."""
     steps: int
     """Policy steps of all simulations together."""
@@ -222,9 +222,8 @@ def _write_inputs(training: FineTuning) -> None:
     import yaml
 
     policy = check_trainable(training.policy)
-    design = {**training.design.to_mapping(), "variant": training.design.variant}
     contents = {
-        "design.yaml": design,
+        "design.yaml": training.design.to_mapping(),
         f"{training.name}.task.yaml": policy.metadata["task"],
         f"{training.name}.preset.yaml": fine_tuning_preset(policy, training.steps),
     }

@@ -28,7 +28,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.design import SPRING, Design
-from hyperleg_design.robot.load import load_robot, walker
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.names import LAYOUTS, PASSIVE
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.entries import check_keys
@@ -128,8 +128,6 @@ def sweep_from_mapping(
     if "measures" not in data:
         chosen = _with_named(data, chosen, base)
     evaluated = _evaluated(data.get("evaluate", []), where)
-    if evaluated:
-        walker(base, f"{where}: evaluate")
     available = measures.columns(chosen, base)
     objectives = _columns(data.get("objectives", []), available, evaluated, where, "objectives")
     maps = _maps(data.get("maps", []), axes, available, evaluated, where)

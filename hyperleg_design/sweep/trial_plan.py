@@ -7,20 +7,17 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.policy import load_policy
+from hyperleg_design.evaluation.policy_choice import policies_for
 from hyperleg_design.evaluation.protocol import (
     Protocol,
     load_protocol,
     protocol_mapping,
 )
-from hyperleg_design.evaluation.shipped import Shipped, policies_for
+from hyperleg_design.evaluation.shipped import Shipped
 from hyperleg_design.sweep.definition import Sweep
-
-if TYPE_CHECKING:
-    pass
 
 SEEDS = 3
 """Trainings that are evaluated on each design."""
@@ -49,22 +46,23 @@ def plan(
     Args:
         sweep: the definition.
         protocols: shipped names, files, or protocols; the kind decides which policies run them.
-        seeds: trainings of each toe layout, at most.
+        seeds: trainings of each variant, at most.
         policies: folder of trainings; the shipped ones by default.
 
     Returns:
         The plan.
 
     Raises:
-        InputError: no such protocol, or no policy for a variant's toe layout.
+        InputError: no such protocol, or no policy for the robot or a variant of it.
     """
     run = tuple(p if isinstance(p, Protocol) else load_protocol(p) for p in protocols)
     if len({kind_of(p) for p in run}) < len(run):
         raise InputError("evaluate", "", list(map(str, protocols)), "expects one of each kind")
+    robots = {variant: sweep.made(sweep.base, variant) for variant in sweep.variants} if run else {}
     chosen = {
-        (kind_of(protocol), variant): policies_for(kind_of(protocol), variant, seeds, policies)
+        (kind_of(protocol), variant): policies_for(kind_of(protocol), robot, seeds, policies)
         for protocol in run
-        for variant in sweep.variants
+        for variant, robot in robots.items()
     }
     digest = hashlib.sha256(json.dumps([protocol_mapping(p) for p in run], sort_keys=True).encode())
     for (kind, variant), files in chosen.items():

@@ -28,7 +28,6 @@ from hyperleg_design.evaluation.protocol import (
     protocol_from_mapping,
     protocol_mapping,
 )
-from hyperleg_design.robot.load import walker
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.sweep.definition import Sweep
 from hyperleg_design.sweep.jobs import completed
@@ -41,7 +40,6 @@ if TYPE_CHECKING:
 
     from hyperleg_design.evaluation.result import Evaluation
     from hyperleg_design.robot.described import RobotDesign
-    from hyperleg_design.robot.design import Design
     from hyperleg_design.sweep.run import SweepResult
 
 TRIALS, CHUNKS, STATE = "trials.parquet", "trial_chunks", "state.json"
@@ -169,15 +167,14 @@ def evaluate_values(
     Returns:
         The trials, as `trial_rows` tabulates them.
     """
-    batch = walker(sweep.design(values, variant), f"{sweep.name}: trials")
-    designs = batch.rows(np.arange(len(samples)))
+    designs = sweep.design(values, variant).rows(np.arange(len(samples)))
     run = protocol_from_mapping(protocol, "protocol")
     found, rejected = evaluate_all(load_policy(policy), designs, run, threads)
     return trial_rows(found, rejected, samples, variant, run, policy)
 
 
 def evaluate_all(
-    policy: OnnxPolicy, designs: Design, protocol: Protocol, threads: int | None = None
+    policy: OnnxPolicy, designs: RobotDesign, protocol: Protocol, threads: int | None = None
 ) -> tuple[dict[int, Evaluation], dict[int, str]]:
     """Evaluate those designs of a batch that can be simulated.
 

@@ -12,8 +12,9 @@ import numpy as np
 from hyperleg_design.evaluation.measures import OUTCOMES
 from hyperleg_design.evaluation.result import counted
 from hyperleg_design.evaluation.statistics import estimate, share
+from hyperleg_design.robot.load import design_argument
 from hyperleg_design.sweep import registry
-from hyperleg_design.sweep.definition import Sweep
+from hyperleg_design.sweep.definition import AS_DESCRIBED, Sweep
 from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.trial_runs import REJECTED
 
@@ -300,7 +301,9 @@ def build_command(sweep: Sweep, row: Mapping[str, Any]) -> str:
         leaf = axis.leaf_values(sweep.base, np.asarray([row[axis.name]]))
         settings |= {path: np.asarray(value)[0] for path, value in leaf.items()}
     changes = " ".join(f"--set '{path}={_yaml(value)}'" for path, value in settings.items())
-    base = f"--design {sweep.base.name} --variant {row['variant']}"
+    base = f"--design {design_argument(sweep.base)}"
+    if row["variant"] != AS_DESCRIBED:
+        base += f" --variant {row['variant']}"
     return f"hyperleg build {base} {changes} --out built"
 
 

@@ -15,6 +15,7 @@ from hyperleg_design.evaluation.robustness import (
     robustness,
 )
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 
 
 def test_levels_change_the_robot_as_they_say():
@@ -27,6 +28,45 @@ def test_levels_change_the_robot_as_they_say():
     assert len(friction) == 14
     changed = design.with_values(friction)
     assert changed.joints.toe.viscous == pytest.approx(0.11)
+
+
+def test_payload_and_friction_are_those_of_any_robot():
+    design = load_robot("mini_cheetah")
+    payload = CONDITIONS["payload"].setting(2.0).design(design)
+    assert payload == {"links.trunk.mass": design["links.trunk.mass"] + 2.0}
+    friction = CONDITIONS["joint_friction"].setting(1.2).design(design)
+    assert set(friction) == {
+        f"joints.{joint}.{kind}"
+        for joint in ("abduction", "hip", "knee")
+        for kind in ("coulomb", "viscous")
+    }
+    assert friction["joints.knee.coulomb"] == pytest.approx(1.2 * 0.2)
+
+
+def test_friction_of_a_robot_without_friction_means_nothing():
+    design = load_robot("mini_cheetah")
+    smooth = design.with_values(CONDITIONS["joint_friction"].setting(0.0).design(design))
+    assert "joint_friction" in conditions_of((), WalkProtocol(), [design])
+    assert "joint_friction" not in conditions_of((), WalkProtocol(), [design, smooth])
+    with pytest.raises(InputError, match=r"joint_friction.*mini_cheetah has no friction"):
+        conditions_of(["joint_friction"], WalkProtocol(), [smooth])
+
+
+def test_a_quadruped_under_a_payload():
+    short = WalkProtocol(trials=2, distance=0.6, time_limit=1.2, steady=Steady(begin=0.3))
+    table = robustness(
+        ["walk_any-mini_cheetah-0"],
+        ["payload"],
+        protocol=short,
+        levels={"payload": (0.0, 2.0)},
+        workers=1,
+    )
+    assert table["trained"].tolist() == ["specialist"] * 2 + ["zero-shot"] * 2
+    assert (table["joule_power"][2:].min()) > table["joule_power"][:2].max()
+    assert {(p.variant, p.level) for p in curves(table)} == {
+        ("mini_cheetah", 0.0),
+        ("mini_cheetah", 2.0),
+    }
 
 
 def test_levels_change_the_protocol_as_they_say():
@@ -60,6 +100,7 @@ def test_curves_count_all_trials_for_arrivals_and_arrivals_for_the_rest():
             "condition": "push",
             "level": level,
             "variant": "toe",
+            "design": "toe",
             "policy": f"p{seed}",
             "seed": seed,
             "outcome": "arrived" if trial or not level else "fell",

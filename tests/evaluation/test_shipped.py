@@ -178,14 +178,3 @@ def test_a_folder_of_a_training_is_its_policy_or_says_that_it_is_not_finished(tm
     (folder / "policy.onnx").write_bytes(b"onnx")
     for name in (folder, folder / "policy.onnx"):
         assert shipped.find_policy(name) == folder / "policy.onnx"
-
-
-def test_guided_policies_stand_for_no_protocol_but_can_be_named(tmp_path):
-    for name in ("t_test_guided-toe_locked-0", "t_test_guided-toe-0", "t_test_free-toe-0"):
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "policy.onnx").write_bytes(b"x")
-    assert [p.group for p in shipped.policies_for("t_test", "toe", 3, tmp_path)] == ["t_test_free"]
-    named = shipped.policies_for("t_test_guided", "toe", 3, tmp_path)
-    assert [p.group for p in named] == ["t_test_guided"]
-    with pytest.raises(InputError, match="no policy was trained for this task and toe layout"):
-        shipped.policies_for("t_test", "toe_locked", 3, tmp_path)

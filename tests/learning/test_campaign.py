@@ -12,8 +12,8 @@ import yaml
 from hyperleg_design import processes
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.plans.analysis_plan import load_plan
+from hyperleg_design.evaluation.policy_choice import GUIDED
 from hyperleg_design.evaluation.protocol import load_protocol
-from hyperleg_design.evaluation.shipped import GUIDED
 from hyperleg_design.learning import campaign as module
 from hyperleg_design.learning.campaign import (
     campaign_status,

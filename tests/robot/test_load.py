@@ -12,7 +12,7 @@ import yaml
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.design import load_design
-from hyperleg_design.robot.load import load_robot, robot_from_mapping
+from hyperleg_design.robot.load import design_argument, load_robot, robot_from_mapping
 from tests.robot.tree_files import leg
 
 
@@ -28,6 +28,10 @@ def test_a_file_may_build_on_another(tmp_path):
     path.write_text("base: mini_cheetah\nactuators: {knee: {gear: 8}}\n")
     design = load_robot(path)
     assert (design.name, design["actuators.knee.gear"]) == ("mine", 8.0)
+    assert pickle.loads(pickle.dumps(design)).bases == design.bases == ("mini_cheetah",)
+    assert design_argument(design) == "mine.yaml"
+    assert design_argument(design.with_values({"links.trunk.mass": 4.0})) == "mine.yaml"
+    assert design_argument(load_robot("mini_cheetah")) == "mini_cheetah"
     path.write_text(yaml.safe_dump({"family": "octopus"}))
     with pytest.raises(InputError, match=r"family.*octopus.*hyperleg, tree"):
         load_robot(path)

@@ -10,6 +10,7 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.drives.actuation import actuation_model
 from hyperleg_design.simulation.drives.machine import machine_of
 from hyperleg_design.simulation.environment import Environment
@@ -100,6 +101,8 @@ def test_a_locked_toe_stays_where_it_is(hyperleg):
 def test_a_swap_of_the_wrong_robot_is_refused(swap, layout):
     with pytest.raises(InputError, match="expects a policy of"):
         Swap(swap)(load_design(layout))
+    with pytest.raises(InputError, match=r"mini_cheetah.*is no HyperLeg"):
+        Swap(swap)(load_robot("mini_cheetah"))
 
 
 def test_swaps_have_names_and_pickle():

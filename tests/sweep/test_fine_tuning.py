@@ -14,8 +14,10 @@ from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.training_fit import training_fit
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.parameters.values import leaves
 from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.sweep import fine_tuning
 from hyperleg_design.sweep.fine_tuning import (
     FineTuning,
@@ -125,6 +127,19 @@ def test_a_folder_holds_the_finalist_of_one_search(tmp_path):
         fine_tuning._write_inputs(dataclasses.replace(job(tmp_path), design=other))
     again = yaml.safe_load((tmp_path / "7" / "design.yaml").read_text())
     assert again["toe"]["mass"]["value"] == 0.31
+
+
+def test_a_quadruped_trains_on_from_its_own_policy(tmp_path):
+    """What is written is the robot, the task and one stage of it."""
+    design = load_robot("mini_cheetah", overrides={"actuators.knee.gear": 8})
+    tuning = FineTuning(find_policy("walk_any-mini_cheetah-0"), design, 64_000, tmp_path / "7")
+    fine_tuning._write_inputs(tuning)
+    written = load_robot(tuning.folder / "design.yaml")
+    assert written.to_mapping() == design.to_mapping()
+    preset = load_preset(tuning.folder / f"{tuning.name}.preset.yaml")
+    task = load_task(tuning.folder / f"{tuning.name}.task.yaml")
+    (stage,) = preset.stages(task.name)
+    assert (stage.steps, stage.assist) == (64_000, 0.0)
 
 
 def test_one_training_that_fails_does_not_stop_the_others(tmp_path, monkeypatch):

@@ -7,13 +7,13 @@ import pandas as pd
 import pytest
 
 from hyperleg_design.evaluation.evaluate import evaluate_many
+from hyperleg_design.evaluation.policy_choice import policies_for
 from hyperleg_design.evaluation.protocol import (
     Steady,
     TTestProtocol,
     WalkProtocol,
     protocol_mapping,
 )
-from hyperleg_design.evaluation.shipped import policies_for
 from hyperleg_design.report.evaluation_text import evaluation_rows
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.transmission import joint_names
@@ -131,7 +131,7 @@ SHORT = {
 @pytest.mark.parametrize("kind", list(SHORT))
 def test_all_that_evaluate_prints_is_a_column_and_an_objective(kind, tmp_path):
     """The same trials give the same bits."""
-    policies = [p.path for p in policies_for(kind, "toe", 2)]
+    policies = [p.path for p in policies_for(kind, load_robot("toe"), 2)]
     sweep = space(axes={"toe.mass": {"values": [0.12, 0.3]}})
     values = {"toe.mass": np.array([0.3])}
     design = sweep.design(values, "toe").take(0)

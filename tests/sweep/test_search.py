@@ -11,8 +11,10 @@ import pytest
 from hyperleg_design import cli
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
+from hyperleg_design.report.sweep.search_text import final_text
 from hyperleg_design.sweep import measures
 from hyperleg_design.sweep import search as searching
+from hyperleg_design.sweep.finalists import run_finalists
 from hyperleg_design.sweep.search import found_designs, run_search, search_of, trial_frame
 from hyperleg_design.sweep.space import sweep_from_mapping
 from hyperleg_design.sweep.trial_plan import plan
@@ -140,6 +142,23 @@ def test_designs_are_walked(tmp_path):
     for number, power in told.items():
         assert power == rows.set_index("number").loc[number, "walk.power"]
     assert all("walk.thermal_peak" in t.constraints for t in study.trials)
+
+
+def test_designs_of_a_quadruped_are_walked_and_its_finalist_walks_again(tmp_path):
+    protocol = WalkProtocol(trials=2, distance=0.6, time_limit=1.2, steady=Steady(begin=0.3))
+    axes = {"actuators.knee.gear": {"low": 5.0, "high": 9.0}}
+    sweep = sweep_from_mapping(
+        {"design": "mini_cheetah", "sampling": "sobol", "count": 1, "axes": axes}
+    )
+    search = search_of(sweep, plan(sweep, [protocol]), ["walk.power"], ["walk.fell<=1"])
+    study = run_search(search, tmp_path, 2, progress=False)
+    assert trial_frame(study)["walk.policy"].tolist() == ["zero-shot"] * 2
+    final = run_finalists(search, study, tmp_path, count=1, progress=False)
+    (finalist,) = final.finalists
+    assert finalist.before["walk.trials"] == 6
+    assert f"--set 'actuators.knee.gear={finalist.before['actuators.knee.gear']:.10g}'" in (
+        final_text(search, final)
+    )
 
 
 def test_from_the_command_line(tmp_path, capsys):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from hyperleg_design.errors import InputError
@@ -253,19 +254,21 @@ MEASURED = {
 
 
 def compare_walks(
-    designs: list[Design],
+    designs: Sequence[RobotDesign],
     protocols: Sequence[str],
     *,
     seeds: int = 3,
+    policies: str | Path | None = None,
     workers: int = 2,
     swap: str = "",
 ) -> dict[str, dict[str, Any]]:
-    """What shipped policies of each design's toe layout do on it.
+    """What trained policies do on each design; `policies_for` says which.
 
     Args:
         designs: each a single robot.
         protocols: `walk`, `t_test`.
         seeds: trainings of each.
+        policies: folder of trainings; the shipped ones by default.
         workers: processes side by side.
         swap: one of `SWAPS`, of all designs; none by default.
 
@@ -274,8 +277,8 @@ def compare_walks(
         the measures of `MEASURED`, each with mean, low and high.
     """
     from hyperleg_design.evaluation.evaluate import evaluate_many
+    from hyperleg_design.evaluation.policy_choice import policies_for
     from hyperleg_design.evaluation.result import swapped
-    from hyperleg_design.evaluation.shipped import policies_for
     from hyperleg_design.report.evaluation_text import evaluation_rows
     from hyperleg_design.simulation.toe_swap import Swap
 
@@ -284,7 +287,7 @@ def compare_walks(
         jobs = [
             (i, design, policy.path)
             for i, design in enumerate(designs)
-            for policy in policies_for(protocol, design.variant, seeds)
+            for policy in policies_for(protocol, design, seeds, policies)
         ]
         done = evaluate_many(
             [path for _, _, path in jobs],

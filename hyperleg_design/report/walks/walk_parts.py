@@ -28,7 +28,6 @@ from hyperleg_design.report.walks.evaluated import WALK, Evaluated
 from hyperleg_design.report.walks.paper_tables import paper_tables
 from hyperleg_design.report.walks.robustness_figure import robustness_figure
 from hyperleg_design.report.walks.walk_figures import cycle_power_figure, impact_band_figure
-from hyperleg_design.robot.load import walker
 
 
 def walks(evaluated: Evaluated, draw: Drawer) -> Part:
@@ -193,9 +192,8 @@ def impacts(evaluated: Evaluated, draw: Drawer) -> Part:
             ["Cannot be told: the walk that would say what mass stands behind a heel has no step."],
         )
     constants = sorted(next(iter(evaluated.band.values())))
-    robot = walker(trial.design, "the stiffness of the sole")
-    pads = {c: pad_of_contact(robot, mass, c) for c in constants}
-    own = float(robot.contact.time_constant)
+    pads = {c: pad_of_contact(trial.design, mass, c) for c in constants}
+    own = float(trial.design.contact_section.time_constant)
     rows: list[list[Any]] = []
     for c in constants:
         pad = pads[c]

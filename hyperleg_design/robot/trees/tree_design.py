@@ -16,7 +16,7 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
-from typing import Any
+from typing import Any, ClassVar
 
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.parameters.fields import number
@@ -55,6 +55,9 @@ NAMED: Mapping[str, type] = {
 class TreeDesign(RobotDesign):
     """A robot with its tree written out; each file's names make a class of their own."""
 
+    family: ClassVar[str] = "tree"
+    bases: tuple[str, ...] = ()
+    """Names of the designs that its file is based on, the nearest first; informative."""
     trunk: Trunk
     masses: TreeMassModel = field(default_factory=TreeMassModel)
     electrical: Electrical
@@ -64,7 +67,7 @@ class TreeDesign(RobotDesign):
     gears: GearModel = field(default_factory=GearModel)
 
     def _head(self) -> dict[str, Any]:
-        return {"family": "tree", "name": self.name}
+        return {"family": self.family, "name": self.name}
 
     def _named(self, section: str) -> dict[str, Any]:
         held: Any = getattr(self, section)
@@ -79,6 +82,11 @@ class TreeDesign(RobotDesign):
     def copy_sections(self) -> dict[str, LimbCopy]:
         """The copies of the limb by name."""
         return self._named("limbs") or {"": LimbCopy()}
+
+    @property
+    def root_link(self) -> str:
+        """Path of the section of the root link."""
+        return f"links.{self.trunk.link}"
 
     @property
     def link_sections(self) -> dict[str, LinkSection]:

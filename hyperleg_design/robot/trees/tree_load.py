@@ -18,7 +18,7 @@ from hyperleg_design.robot.parameters.values import Origin
 from hyperleg_design.robot.trees.tree_check import check_tree_design, ordered
 from hyperleg_design.robot.trees.tree_design import NAMED, TreeDesign, named_class, ratios_class
 
-FAMILY = "tree"
+FAMILY = TreeDesign.family
 """What `family:` says in a file of this kind."""
 OPTIONAL = (
     "limbs",
@@ -82,7 +82,14 @@ class CheckedTreeDesign(TreeDesign):
         plain = {p: v for p, v in parameters.leaves(self).items() if isinstance(v, np.ndarray)}
         batched = {p: plain[p] for p in self.batch_sizes()}
         single = self.take(0) if batched else self
-        return _restored, (single.to_mapping(), self.name, self.source, dict(self.origins), batched)
+        return _restored, (
+            single.to_mapping(),
+            self.name,
+            self.source,
+            dict(self.origins),
+            batched,
+            self.bases,
+        )
 
 
 def _restored(
@@ -91,10 +98,11 @@ def _restored(
     source: str,
     origins: Mapping[str, Origin],
     batched: Mapping[str, np.ndarray],
+    bases: tuple[str, ...] = (),
 ) -> TreeDesign:
     design = tree_design_from_mapping(data, name, source or name)
     restored = design.with_values(batched, name) if batched else design
-    return dataclasses.replace(restored, source=source, origins=origins)
+    return dataclasses.replace(restored, source=source, origins=origins, bases=bases)
 
 
 @cache

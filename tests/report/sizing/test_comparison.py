@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pytest
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.report.sizing import comparison
 from hyperleg_design.robot.design import load_design
@@ -58,6 +59,16 @@ def test_rows_of_one_measure_stand_together_whatever_the_joints_are_called():
 
 def test_compare_keeps_two_designs_of_one_name_apart(design):
     assert len(comparison.compare([design, design.with_values({"toe.mass": 0.4})])) == 2
+
+
+def test_a_quadruped_is_walked_beside_a_biped(monkeypatch):
+    short = WalkProtocol(trials=2, distance=0.6, time_limit=0.8, steady=Steady(begin=0.3))
+    monkeypatch.setattr("hyperleg_design.evaluation.evaluate.load_protocol", lambda name: short)
+    designs = [load_robot("mini_cheetah"), load_design("toe")]
+    found = comparison.compare_walks(designs, ["walk"], seeds=1, workers=1)["walk"]
+    assert [entry["policy"] for entry in found] == ["specialist"] * 2
+    with pytest.raises(InputError, match=r"swap lock_toe.*mini_cheetah.*is no HyperLeg"):
+        comparison.compare_walks(designs[:1], ["walk"], workers=1, swap="lock_toe")
 
 
 def test_designs_are_walked_by_the_policies_of_their_toe_layout(monkeypatch):

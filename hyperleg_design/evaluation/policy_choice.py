@@ -1,0 +1,108 @@
+"""Which trained policies stand for a protocol on a robot.
+
+Trainings lie in folders named `group-design-seed`. HyperLeg's robots walk by the policies of their
+toe layout; a robot that writes its tree out by those that were trained under its own name, or else
+under the name of the nearest of the designs that its file is based on.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.shipped import Shipped, shipped_policies
+from hyperleg_design.robot.load import design_argument
+from hyperleg_design.robot.trees.tree_design import TreeDesign
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.described import RobotDesign
+
+PREFERRED = {"walk": ("walk_upright", "walk"), "t_test": ("t_test_free", "t_test")}
+"""Groups whose policies stand for a kind of protocol, the best first; other groups of that name's
+beginning come after them."""
+GUIDED = "_guided"
+"""Ending of groups whose policies others only start from; they stand for no protocol."""
+_TASKS = {
+    ("hyperleg", "walk"): ("walk", "walk"),
+    ("hyperleg", "t_test"): ("t_test", "goal"),
+    ("tree", "walk"): ("walk_any", "walk_any --preset walker"),
+}
+"""Group and options of `hyperleg train` that give a policy, by family and kind of protocol."""
+
+
+def policies_for(
+    kind: str, design: RobotDesign, seeds: int, folder: str | Path | None = None
+) -> list[Shipped]:
+    """List the last policies of the first trainings for a kind of protocol and a robot.
+
+    Args:
+        kind: of protocol, `walk` or `t_test`; a group's own name chooses that group.
+        design: the robot, or a batch of its kind.
+        seeds: most trainings.
+        folder: of trainings; the shipped ones by default.
+
+    Returns:
+        One policy for each seed, all of one group and trained on one design.
+
+    Raises:
+        InputError: there is none; says how to train one.
+    """
+    known = shipped_policies(folder, late=False)
+    for name in trained_names(design):
+        own = [
+            policy
+            for policy in known
+            if policy.design == name
+            and _stands_for(policy.group, kind)
+            and policy.family == design.family
+        ]
+        if own:
+            groups = [policy.group for policy in own]
+            best = PREFERRED.get(kind, (kind,))
+            group = next((name for name in best if name in groups), groups[0])
+            return [policy for policy in own if policy.group == group][:seeds]
+    have = ", ".join(sorted({f"{policy.group}-{policy.design}" for policy in known})) or "none"
+    what = "robot" if isinstance(design, TreeDesign) else "toe layout"
+    raise InputError(
+        "policies",
+        "",
+        f"{kind}-{trained_names(design)[0]}",
+        f"no policy was trained for this task and {what}; there are {have}; "
+        f"{_remedy(kind, design)}",
+    )
+
+
+def trained_names(design: RobotDesign) -> tuple[str, ...]:
+    """Name what a policy for a robot may have been trained on.
+
+    Args:
+        design: the robot.
+
+    Returns:
+        The toe layout of a HyperLeg; of a robot that writes its tree out its name, and then those
+        of the designs that its file is based on, the nearest first.
+    """
+    if isinstance(design, TreeDesign):
+        return (design.name, *design.bases)
+    return (design.variant,)
+
+
+def _stands_for(group: str, kind: str) -> bool:
+    return group == kind or (group.startswith(kind) and not group.endswith(GUIDED))
+
+
+def _remedy(kind: str, design: RobotDesign) -> str:
+    """How to get a policy for a robot."""
+    name = trained_names(design)[0]
+    if (design.family, kind) not in _TASKS:
+        return (
+            f"no shipped task trains it: train a task of your own with --out FOLDER/{kind}-{name}-0"
+            f" and give --policies FOLDER"
+        )
+    group, options = _TASKS[design.family, kind]
+    robot = design_argument(design) if isinstance(design, TreeDesign) else name
+    return (
+        f"hyperleg train --task {options} --design {robot} --out FOLDER/{group}-{name}-0 trains "
+        f"one, and --policies FOLDER takes it"
+    )
