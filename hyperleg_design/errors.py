@@ -5,8 +5,10 @@ from __future__ import annotations
 import difflib
 import reprlib
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
+
+import numpy as np
 
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 100
@@ -47,6 +49,22 @@ class InputError(HyperlegError):
             self.field if self.field.isprintable() and len(self.field) <= 120 else shown(self.field)
         )
         return f"{self.where}: {field}" if self.field else self.where
+
+
+def of_batch(errors: Mapping[int, InputError], count: int) -> InputError:
+    """Join the errors of single designs of a batch.
+
+    Args:
+        errors: by the design's number, at least one.
+        count: designs of the batch.
+
+    Returns:
+        The first of them; its `bad` marks the designs that have the same one.
+    """
+    first = next(iter(errors.values()))
+    same = [i for i, e in errors.items() if (e.field, e.remedy) == (first.field, first.remedy)]
+    bad = np.isin(np.arange(count), same)
+    return InputError(first.where, first.field, first.value, first.remedy, bad=bad)
 
 
 def shown(value: object) -> str:

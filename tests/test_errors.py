@@ -12,6 +12,7 @@ from hyperleg_design.errors import (
     OutputError,
     in_short,
     meant,
+    of_batch,
     shown,
 )
 
@@ -25,6 +26,17 @@ def test_text_names_where_field_value_and_remedy():
         -1,
         "expects a number in kg",
     )
+
+
+def test_the_error_of_a_batch_marks_the_designs_that_have_the_same():
+    errors = {
+        1: InputError("a", "toe", 1.0, "expects less"),
+        2: InputError("b", "toe", 1.0, "expects more"),
+        4: InputError("c", "toe", 3.0, "expects less"),
+    }
+    error = of_batch(errors, 5)
+    assert str(error) == "a: toe = 1.0: expects less"
+    np.testing.assert_array_equal(error.bad, [False, True, False, False, True])
 
 
 def test_nothing_is_shown_of_a_value_that_is_not_there():

@@ -95,7 +95,8 @@ def evaluate_designs(
         One evaluation for each design, in the order of the batch.
 
     Raises:
-        InputError: as `evaluate`; where designs of the batch cannot stand, its `bad` marks them.
+        InputError: as `evaluate`; where designs of the batch cannot be simulated, its `bad` marks
+            those that have this reason.
     """
     return _run(policy, protocol, designs, task, threads, None)
 

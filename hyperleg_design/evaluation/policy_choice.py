@@ -14,6 +14,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.shipped import Shipped, shipped_policies
 from hyperleg_design.robot.load import design_argument
 from hyperleg_design.robot.trees.tree_design import TreeDesign
+from hyperleg_design.simulation.model import simulation_spec
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign
@@ -46,23 +47,21 @@ def policies_for(
         One policy for each seed, all of one group and trained on one design.
 
     Raises:
-        InputError: there is none; says how to train one.
+        InputError: there is none, which says how to train one, or why the robot cannot be
+            simulated.
     """
-    known = shipped_policies(folder, late=False)
+    known = [p for p in shipped_policies(folder, late=False) if p.family == design.family]
     for name in trained_names(design):
-        own = [
-            policy
-            for policy in known
-            if policy.design == name
-            and _stands_for(policy.group, kind)
-            and policy.family == design.family
-        ]
+        own = [p for p in known if p.design == name and _stands_for(p.group, kind)]
         if own:
             groups = [policy.group for policy in own]
             best = PREFERRED.get(kind, (kind,))
             group = next((name for name in best if name in groups), groups[0])
             return [policy for policy in own if policy.group == group][:seeds]
-    have = ", ".join(sorted({f"{policy.group}-{policy.design}" for policy in known})) or "none"
+    simulation_spec(design.take(0) if design.batch_shape else design)
+    have = ", ".join(sorted({f"{policy.group}-{policy.design}" for policy in known})) or (
+        "none in folders named group-design-seed"
+    )
     what = "robot" if isinstance(design, TreeDesign) else "toe layout"
     raise InputError(
         "policies",
@@ -97,8 +96,8 @@ def _remedy(kind: str, design: RobotDesign) -> str:
     name = trained_names(design)[0]
     if (design.family, kind) not in _TASKS:
         return (
-            f"no shipped task trains it: train a task of your own with --out FOLDER/{kind}-{name}-0"
-            f" and give --policies FOLDER"
+            f"no shipped task trains one: train a task of your own (of waypoints for t_test) with "
+            f"--out FOLDER/{kind}-{name}-0 and give --policies FOLDER"
         )
     group, options = _TASKS[design.family, kind]
     robot = design_argument(design) if isinstance(design, TreeDesign) else name

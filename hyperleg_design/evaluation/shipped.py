@@ -39,7 +39,7 @@ CURVE_ROWS = 200
 """Rows of a packed learning curve."""
 CURVE = ("steps", "stage", "assist", "reward", "speed", "falls", "cost_of_transport")
 """Numbers of a row of a learning curve; `falls` a minute and robot, `assist` relative."""
-_NAME = re.compile(r"(?P<group>[^.].*)-(?P<design>[^-]+)-(?P<seed>\d+)")
+_NAME = re.compile(r"(?P<group>[^.-][^-]*)-(?P<design>.+)-(?P<seed>\d+)")
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> 
         The policies by group, design and seed, the last policy of each training first.
 
     Raises:
-        InputError: a folder that was asked for and is not there.
+        InputError: a folder that was asked for and is not there, or that is a training itself.
     """
     place = Path(folder) if folder is not None else shipped_folder()
     if not place.is_dir():
@@ -119,6 +119,14 @@ def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> 
             "",
             str(folder),
             "no such folder; expects one with a folder a training, such as walk_upright-toe-1",
+        )
+    if folder is not None and (place / POLICY).is_file():
+        raise InputError(
+            "policies",
+            "",
+            str(folder),
+            "is the folder of one training; expects the folder that holds it, under a name such as "
+            "walk_upright-toe-1",
         )
     policies = []
     for training in place.iterdir():

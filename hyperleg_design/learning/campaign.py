@@ -139,6 +139,9 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
         compared = group.get("compared", True)
         if not isinstance(compared, bool):
             raise InputError(where, f"groups.{g}.compared", compared, "expects true or false")
+        if "-" in str(group["name"]):
+            remedy = "expects a name without hyphens: trainings are named group-design-seed"
+            raise InputError(where, f"groups.{g}.name", group["name"], remedy)
         if group["name"] in names:
             raise InputError(where, f"groups.{g}.name", group["name"], "stands twice")
         start = str(group.get("start") or "")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, of_batch
 from hyperleg_design.robot.mjcf import FLOOR, mujoco_spec
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.parameters.values import leaves
@@ -156,19 +156,29 @@ def simulated_robots(
 
     Returns:
         `simulation_model` without alterations, and `layout_of`, of each design.
+
+    Raises:
+        InputError: the first reason why designs cannot be simulated; its `bad` marks them.
     """
     physics = physics or Physics()
     robots = []
-    for design in designs:
+    errors: dict[int, InputError] = {}
+    for number, design in enumerate(designs):
         key = _fingerprint(design, physics)
-        robot = _KEPT_ROBOTS.pop(key, None) or (
-            simulation_model(design, physics),
-            layout_of(design),
-        )
+        try:
+            robot = _KEPT_ROBOTS.pop(key, None) or (
+                simulation_model(design, physics),
+                layout_of(design),
+            )
+        except InputError as error:
+            errors[number] = error
+            continue
         _KEPT_ROBOTS[key] = robot
         robots.append(robot)
         while len(_KEPT_ROBOTS) > KEPT:
             del _KEPT_ROBOTS[next(iter(_KEPT_ROBOTS))]
+    if errors:
+        raise of_batch(errors, len(designs))
     return robots
 
 

@@ -57,6 +57,12 @@ def test_a_file_that_changes_a_tree_walks_by_the_policies_of_its_base(tmp_path):
     assert chosen("walk", robot, 3, tmp_path) == ["walk_any-long_cheetah-4"]
 
 
+def test_names_of_robots_may_hold_hyphens(tmp_path):
+    robot = dataclasses.replace(QUADRUPED, name="long-legged-0")
+    trained(tmp_path, "walk_any-long-legged-0-2", "walk_any-long-1", family="tree")
+    assert chosen("walk", robot, 3, tmp_path) == ["walk_any-long-legged-0-2"]
+
+
 def test_a_tree_of_the_name_of_a_toe_layout_takes_no_hyperlegs_policy(tmp_path):
     namesake = dataclasses.replace(QUADRUPED, name="toe")
     with pytest.raises(InputError, match="no policy was trained for this task and robot"):
@@ -81,12 +87,17 @@ def test_a_tree_of_the_name_of_a_toe_layout_takes_no_hyperlegs_policy(tmp_path):
             "toe_passive",
             "hyperleg train --task walk --design toe_passive --out FOLDER/walk-toe_passive-0",
         ),
-        ("t_test", "mini_cheetah", "no shipped task trains it: train a task of your own"),
+        ("t_test", "mini_cheetah", "no shipped task trains one: train a task of your own"),
     ],
 )
 def test_a_robot_without_policies_is_told_how_to_train_one(kind, design, remedy):
     with pytest.raises(InputError, match=re.escape(remedy)):
         policies_for(kind, load_robot(design), 3)
+
+
+def test_a_robot_that_cannot_be_simulated_says_so_first():
+    with pytest.raises(InputError, match=r"trunk\.motion = 'fixed': expects floating"):
+        policies_for("walk", load_robot("teaching_leg"), 3)
 
 
 def test_the_training_of_a_file_names_the_file(tmp_path):

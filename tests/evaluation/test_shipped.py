@@ -145,6 +145,11 @@ def test_no_shipped_policy_is_no_error_but_a_wrong_folder_is(tmp_path, monkeypat
         shipped.shipped_policies(tmp_path / "nothing")
 
 
+def test_the_folder_of_one_training_is_not_taken_for_one_that_holds_trainings(campaign):
+    with pytest.raises(InputError, match="is the folder of one training"):
+        shipped.shipped_policies(campaign / "walk_upright-toe-0")
+
+
 def test_nothing_foreign_is_packed_or_overwritten(campaign, tmp_path):
     with pytest.raises(InputError, match="no such folder"):
         shipped.pack(tmp_path / "nothing", tmp_path / "packed")

@@ -81,6 +81,7 @@ def test_the_rewards_are_switched_one_at_a_time() -> None:
             "tasks",
         ),
         ({"groups": [DATA["groups"][0], DATA["groups"][0]]}, "groups.1.name"),
+        ({"groups": [{**DATA["groups"][0], "name": "my-walk"}]}, "groups.0.name"),
     ],
 )
 def test_bad_campaigns(change: dict, field: str, write) -> None:

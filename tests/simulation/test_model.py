@@ -157,6 +157,14 @@ def test_a_robot_that_cannot_be_simulated_is_refused(change, field):
         simulation_model(robot)
 
 
+def test_a_batch_says_which_robots_cannot_be_simulated_and_why():
+    robot = load_robot("mini_cheetah")
+    slack = robot.with_values({"joints.knee.stiffness": 0.0})
+    with pytest.raises(InputError, match=r"joints\.knee\.stiffness.*must be positive") as caught:
+        simulated_robots([robot, slack, robot])
+    np.testing.assert_array_equal(caught.value.bad, [False, True, False])
+
+
 def test_equal_designs_share_a_model_and_a_layout_that_are_those_of_a_design_alone(design):
     lighter = design.with_values({"toe.mass": 0.123})
     first, second, third = simulated_robots([design, lighter, design])

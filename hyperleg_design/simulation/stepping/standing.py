@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, of_batch
 from hyperleg_design.simulation.settings import Limits
 
 if TYPE_CHECKING:
@@ -27,11 +27,17 @@ def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: 
         name: of the robot, for error messages.
 
     Raises:
-        InputError: its pelvis would be under the height that counts as fallen, or its weight beside
-        its soles.
+        InputError: its base would be under its feet or under the height that counts as fallen, or
+            its weight beside its soles.
     """
     import mujoco
 
+    if not layout.default_height > 0:
+        remedy = (
+            f"the {layout.base} is no higher than the pads in the default posture; change "
+            f"joints.*.default_deg"
+        )
+        raise InputError(name, "", round(float(layout.default_height), 4), remedy)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)
@@ -67,7 +73,7 @@ def check_all_standing(
         limits: at which height a robot counts as fallen.
 
     Raises:
-        InputError: the first one's reason, and which others cannot.
+        InputError: the first reason why robots cannot stand; its `bad` marks them.
     """
     errors: dict[int, InputError] = {}
     for i, (design, model, layout) in enumerate(zip(designs, models, layouts, strict=True)):
@@ -76,6 +82,4 @@ def check_all_standing(
         except InputError as error:
             errors[i] = error
     if errors:
-        first = next(iter(errors.values()))
-        bad = np.isin(np.arange(len(designs)), list(errors))
-        raise InputError(first.where, first.field, first.value, first.remedy, bad=bad)
+        raise of_batch(errors, len(designs))

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -23,6 +25,13 @@ def test_a_robot_whose_pelvis_stands_lower_than_a_fall_is_refused(robot) -> None
     check_standing(model, layout, limits, own.name)
     with pytest.raises(InputError, match=r"stands lower than a fall, 2\.5 m"):
         check_standing(model, layout, Limits(height=2.5), own.name)
+
+
+def test_a_robot_whose_base_is_under_its_feet_is_refused(robot) -> None:
+    own, model, layout, limits = robot
+    upside_down = dataclasses.replace(layout, default_height=-0.2)
+    with pytest.raises(InputError, match=r"-0\.2: the pelvis is no higher than the pads"):
+        check_standing(model, upside_down, limits, own.name)
 
 
 def test_a_weight_beside_the_soles_is_refused(robot) -> None:
