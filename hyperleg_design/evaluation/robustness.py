@@ -68,8 +68,8 @@ class Condition:
 
 
 def _payload(mass: float) -> Setting:
-    """A point mass at the centre of mass of the root link, of whose inertia that is declared as
-    radii of gyration it takes its share.
+    """A mass at the centre of mass of the root link; only an inertia that the design computes from
+    the mass grows with it.
     """
 
     def leaves(design: RobotDesign) -> dict[str, Any]:

@@ -57,7 +57,8 @@ class TreeDesign(RobotDesign):
 
     family: ClassVar[str] = "tree"
     bases: tuple[str, ...] = ()
-    """Names of the designs that its file is based on, the nearest first; informative."""
+    """Names of the designs that its file is based on, the nearest first, by whose
+    policies it may walk."""
     trunk: Trunk
     masses: TreeMassModel = field(default_factory=TreeMassModel)
     electrical: Electrical
