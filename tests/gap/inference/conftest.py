@@ -1,0 +1,17 @@
+import diagnosed
+import pytest
+
+from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.search import Search
+
+
+@pytest.fixture(scope="session")
+def search(robot_files):
+    """Search for friction of a robot with viscous friction at its knee, dry friction at its hip."""
+    evidence = diagnosed.evidence(robot_files["coupled"], diagnosed.run("both", 0))
+    places = [
+        (effect, joint)
+        for effect in ("viscous_friction", "coulomb_friction")
+        for joint in ("hip", "knee")
+    ]
+    return Search(evidence, InferenceRules(), places)

@@ -1,0 +1,67 @@
+"""The least sizes that logs would have shown, against causes of these sizes in the residual."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.inference.detectable import detectable
+
+
+@pytest.fixture(scope="module")
+def sizes(search):
+    return detectable(search)
+
+
+def test_a_cause_of_this_size_is_named_nine_times_in_ten(search, sizes):
+    evidence, scales = search.evidence, search.fits.nothing.scales
+    for one in sizes:
+        (cause,) = search.traces[one.effect, one.location, False]
+        unit = cause.columns[0] / cause.usual[0] * evidence.weight
+        mean = one.change * unit
+        # the log likelihood over nothing's of the best size is z^2 / 2, z normal about its mean
+        information = 0.0
+        for channel, own in zip(evidence.channels, scales, strict=True):
+            cross, square = channel.crossed(mean[None])
+            information += channel.reduced(own, cross, square)[1, 1]
+        odds = np.log(2 * 2 / 0.5)
+        assert norm.sf(np.sqrt(2 * odds) - np.sqrt(information)) == pytest.approx(0.9, abs=1e-3)
+
+
+def test_each_effect_at_each_place_has_one_size_within_its_bounds(search, sizes):
+    assert {(one.effect, one.location) for one in sizes} == {name[:2] for name in search.traces}
+    subject = search.evidence.signals[0].subject
+    for one in sizes:
+        effect = EFFECTS[one.effect]
+        (parameter,) = (p for p in effect.parameters if p.name == one.parameter)
+        assert one.unit == parameter.unit
+        low, high = effect.bounds(one.location, subject)[:, 0]
+        assert 0 < one.change <= max(parameter.null - low, high - parameter.null)
+
+
+def test_what_is_wrong_is_larger_than_what_would_have_been_named(sizes):
+    least = {(one.effect, one.location): one.change for one in sizes}
+    assert least["viscous_friction", "knee"] < 0.3
+    assert least["coulomb_friction", "hip"] < 0.8
+
+
+def test_less_likely_causes_must_be_larger(search, sizes):
+    doubtful = type(search).__new__(type(search))
+    cause = replace(search.rules.cause, probability=0.01)
+    doubtful.__dict__ |= vars(search) | {"rules": replace(search.rules, cause=cause)}
+    for one, other in zip(sizes, detectable(doubtful), strict=True):
+        assert other.change > one.change
+
+
+def test_the_answers_file_holds_all_fields(sizes):
+    assert sizes[0].mapping() == {
+        "effect": sizes[0].effect,
+        "location": sizes[0].location,
+        "parameter": sizes[0].parameter,
+        "change": sizes[0].change,
+        "unit": sizes[0].unit,
+    }

@@ -1,0 +1,109 @@
+"""The search for causes against all sets of them, each fitted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.endogenous import Factor
+from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate
+from hyperleg_design.gap.inference.search import Search, traces_of, ungaining
+
+VISCOUS, DRY = ("viscous_friction", "knee", False), ("coulomb_friction", "hip", False)
+
+
+@pytest.fixture(scope="module")
+def result(search):
+    return search.result()
+
+
+def test_the_best_of_all_sets_of_causes_is_found(search, result):
+    single = {
+        name: Candidate(name[0], name[1], (traced[0],)) for name, traced in search.traces.items()
+    }
+    assert len(single) == 4
+    scores = {
+        tuple(sorted(names)): search.fits.fit(
+            [single[name] for name in names], search.fits.nothing.scales
+        ).score
+        for size in range(1, 4)
+        for names in combinations(single, size)
+    }
+    best = max(scores, key=scores.__getitem__)
+    assert result.best.names == best == tuple(sorted([VISCOUS, DRY]))
+    assert result.best.score == pytest.approx(scores[best], abs=0.5)
+
+
+def test_sizes_of_what_is_found_are_those_of_the_robot(result):
+    found = {
+        one.effect: (result.best.values(place)[0], result.best.deviation(place)[0])
+        for place, one in enumerate(result.best.causes)
+    }
+    for effect, size in (("viscous_friction", 0.3), ("coulomb_friction", 0.8)):
+        value, deviation = found[effect]
+        assert value == pytest.approx(size, abs=3 * deviation + 0.05 * size)
+
+
+def test_hypotheses_are_ranked_each_once_and_nothing_wrong_is_among_them(result):
+    scores = [one.score for one in result.hypotheses]
+    assert scores == sorted(scores, reverse=True)
+    names = [one.names for one in result.hypotheses]
+    assert len(set(names)) == len(names)
+    assert () in names
+    assert any(EVERYWHERE in {place for _, place, _ in one} for one in names)
+
+
+def test_every_cause_that_is_found_is_worth_its_prior(search, result):
+    best = result.best
+    for place in range(len(best.candidates)):
+        rest = best.candidates[:place] + best.candidates[place + 1 :]
+        assert search.fits.fit(rest, best.scales).score < best.score
+
+
+def test_no_number_of_threads_changes_the_answer(search, result):
+    places = [name[:2] for name in search.traces]
+    other = Search(search.evidence, search.rules, places, threads=3).result()
+    assert [one.names for one in other.hypotheses] == [one.names for one in result.hypotheses]
+    assert [one.score for one in other.hypotheses] == [one.score for one in result.hypotheses]
+
+
+def test_a_set_is_no_larger_than_the_rules_allow(search):
+    rules = replace(search.rules, search=replace(search.rules.search, causes=1))
+    places = [name[:2] for name in search.traces]
+    found = Search(search.evidence, rules, places).result()
+    assert max(len(one.candidates) for one in found.hypotheses) == 1
+    assert found.best.names == (VISCOUS,)
+
+
+def test_what_the_logs_cannot_show_is_not_judged(search):
+    places = [("thermal_derating", "m_front"), ("command_delay", "robot"), VISCOUS[:2]]
+    traces = traces_of(search.evidence, places, 1)
+    missing = [one for one in traces.values() if isinstance(one, screen.NotJudged)]
+    found = Search(search.evidence, search.rules, places).result()
+    assert set(found.not_judged) == set(missing)
+    assert missing
+    assert found.best.names == (VISCOUS,)
+
+
+def test_without_references_nothing_acts_in_them(search):
+    assert all(not standing for *_, standing in search.traces)
+    for traced in search.traces.values():
+        for cause in traced:
+            assert not cause.standing
+            assert cause.columns.shape[1] == len(search.evidence.samples.value)
+
+
+def test_a_cause_that_does_not_gain_by_scaling_torques_is_otherwise_the_same(search):
+    (cause,) = search.traces[VISCOUS]
+    assert ungaining(cause) is cause
+    scaling = replace(cause, factor=Factor(0, np.ones(3), 50.0))
+    found = ungaining(scaling)
+    assert found.columns is cause.columns
+    sizes = np.linspace(-0.3, 0.3, 7)
+    gains = np.array([[one.factor.log(size) for size in sizes] for one in (scaling, found)])
+    assert np.abs(gains[0]).max() > 0.1
+    assert (gains[1] <= 1e-12).all()
