@@ -197,10 +197,8 @@ def _told(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
     )
     own = np.array([subject.feet[p.foot] == one.location for p in subject.pads])
     if one.effect == FORCES_LATE:
-        torque, wrench = (
-            -one.spread * first_derivative(values.T, signals.step).T
-            for values in pads.contact_torque(subject, signals.position, rotation, force)
-        )
+        later = -one.spread * np.gradient(force, signals.step, axis=0)
+        torque, wrench = pads.contact_torque(subject, signals.position, rotation, later)
     elif one.effect == FORCES_SCALED:
         scaled = one.spread * np.where(own[:, None], force, 0.0)
         torque, wrench = pads.contact_torque(subject, signals.position, rotation, scaled)
