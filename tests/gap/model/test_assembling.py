@@ -20,12 +20,17 @@ CHAIN = """<mujoco><worldbody><body><joint name="first" axis="0 1 0"/><geom size
 <body pos="0 0 -0.3"><joint name="second" axis="0 1 0"/><geom size="0.05" mass="0.5"/>
 <body pos="0 0.1 -0.3"><joint name="third" axis="1 0 0"/><geom size="0.04" mass="0.2"
 pos="0 0 -0.1"/></body></body></body></worldbody></mujoco>"""
-ROBOTS = ("hyperleg", "arm", "coupled", "pendulum")
+ROBOTS = ("hyperleg", "arm", "coupled", "heavy_hip", "pendulum")
 COEFFICIENT = st.floats(-30, 30).filter(lambda x: x == 0 or abs(x) > 1e-3)
 
 
 @pytest.fixture(scope="module", params=ROBOTS)
-def subject(request, robot_files):
+def subject(request, robot_files, tmp_path_factory):
+    if request.param == "heavy_hip":  # armature of a joint beside the rotors of coupled motors
+        path = tmp_path_factory.mktemp("robot") / "heavy_hip.xml"
+        text = robot_files["coupled"].read_text()
+        path.write_text(text.replace('name="hip"', 'name="hip" armature="0.04"'))
+        return load_subject(path)
     return load_subject(robot_files.get(request.param, request.param))
 
 
