@@ -156,14 +156,15 @@ def test_the_guided_t_test_ends_with_the_rewards_of_the_t_test_but_for_path_and_
     final = final_rewards(preset, task)
     own = final_rewards(load_preset("t_test"), load_task("t_test_free"))
     assert {n for n in final if final[n] != own[n]} == {"path_deviation", "termination"}
-    for name in ("path_deviation", "termination"):
-        assert own[name].weight < final[name].weight < 0
+    assert own["termination"].weight < final["termination"].weight < 0
+    assert final["path_deviation"].weight < own["path_deviation"].weight < 0
     assert set(own) == set(final)
     assert set(task.rewards) - set(final) == HELPERS
     assert preset.stages("t_test_guided")[-1].commands["course_share"] > 0
     for name in ("t_test_guided", "t_test_free"):
         task = load_task(name)
         assert "clock" not in {part for parts in task.observations.values() for part in parts}
+        assert all("path" in parts for parts in task.observations.values())
         assert task.limits.duration >= 30.0
 
 

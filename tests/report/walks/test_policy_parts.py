@@ -112,6 +112,7 @@ def test_cost_of_transport_is_drawn_over_speed_where_cadence_is_free(tmp_path):
             "condition": "speed",
             "level": level,
             "variant": design,
+            "design": "hyperleg",
             "policy": f"{design}-{seed}",
             "seed": seed,
             "outcome": "arrived",
