@@ -60,9 +60,16 @@ def all_cases() -> list[Case]:
     from hyperleg_design.validation.benchmark.blind_cases import blind_cases
     from hyperleg_design.validation.newcomers.cases import newcomer_cases
     from hyperleg_design.validation.newcomers.crane_cases import crane_cases
+    from hyperleg_design.validation.newcomers.quadruped_cases import quadruped_cases
     from hyperleg_design.validation.real.cases import real_cases
 
-    cases = [*real_cases(), *newcomer_cases(), *crane_cases(), *blind_cases()]
+    cases = [
+        *real_cases(),
+        *newcomer_cases(),
+        *crane_cases(),
+        *quadruped_cases(),
+        *blind_cases(),
+    ]
     names = [case.name for case in cases]
     assert len(set(names)) == len(names), "names of cases are unique"
     return cases

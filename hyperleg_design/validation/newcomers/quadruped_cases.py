@@ -1,0 +1,167 @@
+"""Cases of the quadruped on its feet: what is wrong, which motions tests and references have, and
+the truth.
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from pathlib import Path
+
+from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
+from hyperleg_design.validation.newcomers import quadruped
+from hyperleg_design.validation.newcomers.names import ALIKE, EFFECTS, SIZES
+from hyperleg_design.validation.newcomers.plant import Wrong
+from hyperleg_design.validation.newcomers.quadruped import FEET, JOINTS, Run
+
+USUAL = ("sway", "trot")
+"""Motions of tests and references where a case says nothing else."""
+OTHER = ("squat", "crawl")
+"""Motions that no reference has."""
+ROBOTS = 3
+"""Robots that were built; each case has one of them."""
+GROUND = {"slippery": "ground_friction", "soft": "ground_compliance"}
+"""Effects of the catalogue at feet."""
+AXES = ("gyro_x", "gyro_y", "gyro_z")
+
+
+@dataclass(frozen=True)
+class QuadrupedPlan:
+    """One case of the quadruped."""
+
+    label: str
+    wrongs: tuple[Wrong, ...] = ()
+    tests: tuple[str, ...] = USUAL
+    references: tuple[str, ...] = USUAL
+    """Motions, one a log."""
+    plain: bool = False
+    """Whether the robot's file is the URDF as it comes, which lacks friction and rotors."""
+
+    @property
+    def everywhere(self) -> bool:
+        """Whether one effect acts at several joints."""
+        return len(self.wrongs) > 1 and len({wrong.what for wrong in self.wrongs}) == 1
+
+    @property
+    def truth(self) -> Truth:
+        """What is wrong."""
+        faults = tuple(_fault(wrong) for wrong in self.wrongs)
+        return Truth(
+            faults, bool(self.references), identified=not self.plain, everywhere=self.everywhere
+        )
+
+    @property
+    def seed(self) -> int:
+        """Of the motions and the noise of its tests, and of what robot it has."""
+        return zlib.crc32(self.label.encode()) // 16
+
+
+def _one(label: str, what: str, joint: str, size: float) -> QuadrupedPlan:
+    return QuadrupedPlan(label, (Wrong(what, JOINTS.index(f"{joint}_joint"), size),))
+
+
+def _at_foot(label: str, what: str, foot: str, size: float) -> QuadrupedPlan:
+    return QuadrupedPlan(label, (Wrong(what, FEET.index(foot), size),))
+
+
+TRUNK_LOAD = Wrong("load", size=0.6, body="trunk", at=(0.08, 0.03, 0.09))
+CALF_LOAD = Wrong("load", size=0.15, body="RL_calf", at=(0.0, 0.0, -0.15))
+
+PLANS: tuple[QuadrupedPlan, ...] = (
+    QuadrupedPlan("nothing-same"),
+    QuadrupedPlan("nothing-other", tests=OTHER),
+    QuadrupedPlan("nothing-alone", references=()),
+    QuadrupedPlan("nothing-plain", plain=True),
+    _one("dry-calf", "dry", "RR_calf", 0.45),
+    _one("weak-thigh", "weak", "FR_thigh", 0.87),
+    _one("zero-calf", "zero", "FL_calf", 0.04),
+    QuadrupedPlan("late-8ms", (Wrong("late", size=0.0075),)),
+    _one("gain-hip", "gain", "RL_hip", 0.7),
+    _one("rotor-calf", "rotor", "FR_calf", 0.012),
+    _one("lossy-thigh", "lossy", "FL_thigh", 0.08),
+    QuadrupedPlan("load-trunk", (TRUNK_LOAD,)),
+    QuadrupedPlan("load-calf", (CALF_LOAD,)),
+    _at_foot("slippery-foot", "slippery", "FR_foot", 0.3),
+    _at_foot("soft-foot", "soft", "RL_foot", 4.0),
+    QuadrupedPlan("gyro-bias", (Wrong("gyro", 0, 0.02),)),
+    QuadrupedPlan("rough-everywhere", tuple(Wrong("rough", j, 2.5) for j in range(12))),
+    QuadrupedPlan("load-zero", (TRUNK_LOAD, Wrong("zero", JOINTS.index("RR_thigh_joint"), 0.03))),
+    QuadrupedPlan("push-trunk", (Wrong("push", size=12.0, body="trunk"),)),
+    QuadrupedPlan("rope-calf", (Wrong("rope", size=400.0, body="RR_calf"),)),
+    QuadrupedPlan("tilt-floor", (Wrong("tilt", size=0.05),)),
+    QuadrupedPlan("lost-packets", (Wrong("lost", size=0.2),)),
+    _one("hysteresis-thigh", "hysteresis", "FR_thigh", 0.8),
+)
+"""In this order; all for development."""
+
+
+def quadruped_cases() -> list[Case]:
+    """List all cases of the quadruped."""
+    return [
+        Case(
+            f"new-quadruped-{plan.label}",
+            "newcomers",
+            "development",
+            f"quadruped on its feet, {plan.label.replace('-', ' ')}",
+            plan.truth.kind,
+            partial(material, plan=plan),
+        )
+        for plan in PLANS
+    ]
+
+
+def material(data: Path, plan: QuadrupedPlan, duration: float = 10.0) -> tuple[Material, Truth]:
+    """The files of one case and its truth.
+
+    Args:
+        data: of the real logs; none are used.
+        plan: of the case.
+        duration: of each log [s].
+    """
+    build = 40 + plan.seed % ROBOTS
+    tests = tuple(
+        quadruped.simulate(
+            plan.wrongs,
+            Run(motion, plan.seed + 10 * k, build, plan.seed, f"test_{k}", duration),
+        ).declared(session="test")
+        for k, motion in enumerate(plan.tests)
+    )
+    references = tuple(
+        _healthy(Run(motion, 1000 * build + 10 * k, build, build, f"healthy_{k}", duration))
+        for k, motion in enumerate(plan.references)
+    )
+    robot = quadruped.plain_file() if plan.plain else quadruped.careful_file()
+    return Material(robot, tests, references), plan.truth
+
+
+@lru_cache(maxsize=2 * ROBOTS)
+def _healthy(run: Run) -> Recording:
+    """A log of a healthy robot, which cases share that have the same robot."""
+    return quadruped.simulate((), run).declared(session="healthy")
+
+
+def _fault(wrong: Wrong) -> Fault:
+    """What is wrong in the words of the catalogue."""
+    what, size = wrong.what, wrong.size
+    if what in GROUND:
+        values = {"scale": size} if what == "slippery" else {}
+        return Fault(GROUND[what], (FEET[wrong.place],), values)
+    if what == "gyro":
+        return Fault("imu_bias", ("imu", "sensor", "gyro", "robot"), {AXES[wrong.place]: size})
+    if what not in EFFECTS:
+        return Fault(what, (), listed=False)
+    joint = JOINTS[wrong.place]
+    places: tuple[str, ...] = (joint, joint.removesuffix("_joint"))
+    if what == "load":
+        places = (
+            (wrong.body, "base") if wrong.body == "trunk" else (wrong.body, f"{wrong.body}_joint")
+        )
+    if what == "late":
+        places = ("robot",)
+    values = {SIZES[what]: float(size)} if what in SIZES else {}
+    if what == "rotor":
+        values = {"inertia": float(size)}
+    if what == "rough":
+        values = {"torque": float((size - 1) * quadruped.RUBBING)}
+    return Fault(EFFECTS[what], places, values, tuple((e, places) for e in ALIKE.get(what, ())))
