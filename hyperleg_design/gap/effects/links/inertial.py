@@ -151,7 +151,8 @@ class AddedInertia(Alteration):
 
 def fitted(signals: Signals, link: str, part: slice) -> np.ndarray | None:
     """Some of the first four inertial parameters that a linear fit to a log adds to a link; None
-    where it shows none of them.
+    where it shows none of them. What a floating base carries is in no joint's torque, but in what
+    the ground must give more.
 
     Args:
         signals: a conditioned log, `t` ticks.
@@ -161,12 +162,14 @@ def fitted(signals: Signals, link: str, part: slice) -> np.ndarray | None:
     Returns:
         The parameters, or None.
     """
-    residual = signals.residual["motion"]
+    tree = signals.subject.tree
+    on_base = tree.link_joint[tree.link(link)] == BASE
+    residual = signals.residual.get("base" if on_base else "motion")
+    if residual is None:
+        return None
     known = np.isfinite(residual) & signals.valid[:, None]
-    columns, values = (
-        regressor.link_regressor(signals, link)[..., :4][known][:, part],
-        residual[known],
-    )
+    whole = (regressor.base_regressor if on_base else regressor.link_regressor)(signals, link)
+    columns, values = whole[..., :4][known][:, part], residual[known]
     square = columns.T @ columns
     if not len(values) or np.trace(square) <= 0:
         return None

@@ -157,6 +157,21 @@ def test_a_linear_fit_finds_a_payload_that_hangs_there(arm):
     np.testing.assert_allclose(start[1:], values[1:], atol=0.05)
 
 
+def test_a_linear_fit_finds_a_payload_on_a_floating_base(biped_runs):
+    """No joint feels it directly; the ground must give more."""
+    log, one = biped_runs["standing"], effect("payload")
+    standing = condition(log, load_subject(None, [log]))
+    base = one.locations(standing.subject)[0]
+    values = np.array([3.0, 0.06, -0.04, 0.1, 0.0])
+    trace = one.trace(standing, base, values[None])
+    residual = standing.residual | {"base": trace["base"][0]}
+    start = one.starts(replace(standing, residual=residual), base)[0]
+    assert start[0] == pytest.approx(3.0, rel=0.05)
+    np.testing.assert_allclose(start[1:3], values[1:3], atol=0.02)
+    told = {name: rows for name, rows in standing.residual.items() if name != "base"}
+    assert len(one.starts(replace(standing, residual=told), base)) == 2
+
+
 def test_a_load_out_of_its_links_reach_is_rather_none(arm):
     one, reach = effect("payload"), NEAR * arm.subject.tree.length
     assert reach == pytest.approx(NEAR * sum(np.linalg.norm(arm.subject.tree.offset[1:], axis=1)))
