@@ -18,7 +18,9 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference import screen
 
 if TYPE_CHECKING:
+    from hyperleg_design.gap.effects.effect import Effect
     from hyperleg_design.gap.inference.search import Search
+    from hyperleg_design.gap.model.subject import Subject
 
 OFTEN = 1.28
 """Standard deviations above which nine in ten of a normal distribution lie."""
@@ -62,7 +64,10 @@ def detectable(search: Search) -> tuple[Detectable, ...]:
             i = sizes[0]
             change = np.abs(traced[0][:, i] - effect.nulls[i])
             if change.max() > 0:
-                first = int(np.argmin(np.where(change > 0, change, np.inf)))
+                plain = usual_shape(effect, place, subject, traced[0]) & (change > 0)
+                first = int(
+                    np.argmin(np.where(plain if plain.any() else change > 0, change, np.inf))
+                )
                 entries.append((name, place, i, float(change[first]), most[i], information[first]))
     found = []
     for name, place, i, unit_size, limit, own in entries:
@@ -73,3 +78,24 @@ def detectable(search: Search) -> tuple[Detectable, ...]:
         if 0 < size <= limit:
             found.append(Detectable(name, place, parameter.name, float(size), parameter.unit))
     return tuple(found)
+
+
+def usual_shape(effect: Effect, place: str, subject: Subject, values: np.ndarray) -> np.ndarray:
+    """Tell which values of an effect have the shape of its example.
+
+    A start that was fitted to a log may have any shape: a load of some grams a metre away from its
+    link, which shows at a hundredth of the mass of a load on the link.
+
+    Args:
+        effect: the effect.
+        place: where it acts.
+        subject: the robot.
+        values: of its parameters `(k, parameters)`.
+
+    Returns:
+        `(k,)`.
+    """
+    shape = [i for i, parameter in enumerate(effect.parameters) if parameter.shape]
+    return np.asarray(
+        np.isclose(values[:, shape], effect.example(place, subject)[shape], atol=1e-9).all(1)
+    )

@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.detectable import detectable
+from hyperleg_design.gap.inference.detectable import detectable, usual_shape
 
 
 @pytest.fixture(scope="module")
@@ -65,3 +65,14 @@ def test_the_answers_file_holds_all_fields(sizes):
         "change": sizes[0].change,
         "unit": sizes[0].unit,
     }
+
+
+def test_a_load_of_grams_far_from_its_link_is_no_measure_of_what_shows(search):
+    subject, effect = search.evidence.signals[0].subject, EFFECTS["payload"]
+    place = effect.locations(subject)[-1]
+    shown = effect.example(place, subject)
+    far = np.array([0.001, 1.0, 1.0, -1.0, 0.0])
+    told = usual_shape(effect, place, subject, np.array([far, shown, 0.1 * shown]))
+    assert told.tolist() == [False, True, False]
+    half = np.r_[0.5 * shown[0], shown[1:]]
+    assert usual_shape(effect, place, subject, half[None]).all()
