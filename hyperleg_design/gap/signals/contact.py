@@ -13,6 +13,8 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.model.pads import pad_points
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.model.base import BaseMotion
     from hyperleg_design.gap.model.subject import Subject
@@ -51,7 +53,9 @@ def contacts(
 ) -> Ground:
     """Compute the contact of one log with the ground.
 
-    Forces are logged by pad, or by foot, which is as good where a foot has one pad.
+    Forces are logged by pad, or by foot, which is as good where a foot has one pad. A foot of whose
+    force a log tells nothing may touch where it is near the lowest foot, and carries nothing
+    elsewhere: shapes on hips, which many files have, are no feet.
 
     Args:
         log: of this subject.
@@ -96,6 +100,10 @@ def contacts(
         )
 
     on_pads, on_feet = force(pad_names), force(feet)
+    untold = _untold_feet(subject, log.feet)
+    if untold and base is not None:
+        near = _may_touch(subject, position, base)[:, untold, None]
+        on_feet[:, untold] = np.where(near, np.nan, 0.0)
     total = np.stack(
         [np.where(foot_of_pad[:, None] == f, on_pads, 0.0).sum(1) for f in range(len(feet))], 1
     )
@@ -144,6 +152,15 @@ def _foot_chain(subject: Subject, foot: int) -> list[int]:
         if pad.foot == foot:
             found |= set(subject.tree.chain(int(subject.tree.link_joint[pad.link])))
     return sorted(found)
+
+
+def _untold_feet(subject: Subject, told: Collection[str]) -> list[int]:
+    """Feet of which neither the force nor that of a pad is logged."""
+    return [
+        index
+        for index, foot in enumerate(subject.feet)
+        if foot not in told and not any(p.foot == index and p.name in told for p in subject.pads)
+    ]
 
 
 def _may_touch(subject: Subject, position: np.ndarray, base: BaseMotion) -> np.ndarray:

@@ -52,6 +52,24 @@ def test_a_foot_in_the_air_keeps_its_rows(biped_runs):
     assert np.isnan(residual(signals)[:, left]).all()
 
 
+def test_a_foot_without_forces_in_a_log_that_has_some_carries_nothing_in_the_air(biped_runs):
+    """As shapes on a quadruped's hips do, which are no feet but look like some."""
+    log = biped_runs["standing"]
+    told = {c: v for c, v in log.signals.items() if not c.startswith("contact_force/right")}
+    standing = conditioned(log.changed(signals=told))
+    joints = standing.subject.joints
+    right = [i for i, j in enumerate(joints) if j.startswith("right")]
+    assert np.isnan(residual(standing)[:, right]).all()
+    assert np.isnan(residual(standing, "base")).all()
+    lifted = {
+        c: v + {"position/right_knee": 0.8, "position/right_hip_pitch": -0.4}.get(c, 0.0)
+        for c, v in told.items()
+    }
+    raised = conditioned(log.changed(signals=lifted))
+    assert np.isfinite(residual(raised)).all()
+    assert np.isfinite(residual(raised, "base")).all()
+
+
 def test_total_of_a_foot_with_several_pads_has_no_known_place(biped_runs):
     log = biped_runs["standing"]
     signals = {c: v for c, v in log.signals.items() if not c.startswith("contact_force/")}
