@@ -137,7 +137,9 @@ def reach(samples: Samples, columns: np.ndarray) -> float:
     columns.
     """
     square = np.bincount(
-        samples.group, samples.share * np.square(columns / samples.floor).sum(0), samples.groups
+        samples.group,
+        samples.share * np.einsum("ks,ks->s", columns, columns) / np.square(samples.floor),
+        samples.groups,
     )
     number = np.bincount(samples.group, samples.share, samples.groups)
     return float(np.sqrt(np.max(square / np.maximum(number, 1e-9), initial=0.0)))
