@@ -21,12 +21,11 @@ import numpy as np
 from hyperleg_design.sizing.other_robots import robots_folder
 from hyperleg_design.validation.benchmark.case import Recording
 from hyperleg_design.validation.newcomers.plant import Wrong
-from hyperleg_design.validation.newcomers.quadruped_motion import LEGS, MOTIONS
+from hyperleg_design.validation.newcomers.quadruped_log import FEET, JOINTS, logged
+from hyperleg_design.validation.newcomers.quadruped_motion import MOTIONS
 
 FILE = "a1_description/urdf/a1.urdf"
 """In the robots of `example-robot-data`."""
-JOINTS = tuple(f"{leg}_{part}_joint" for leg in LEGS for part in ("hip", "thigh", "calf"))
-FEET = tuple(f"{leg}_foot" for leg in LEGS)
 STIFFNESS, DAMPING = np.tile([90.0, 90.0, 110.0], 4), np.full(12, 2.0)
 """Of the controllers, which logs declare [Nm/rad], [Nms/rad]."""
 RUBBING, VISCOUS, ROTOR = 0.25, 0.06, 0.009
@@ -47,12 +46,8 @@ GYRO_BIAS, FORCE_BIAS = 0.001, 0.02
 """Of the IMU, from session to session [rad/s, m/s^2]."""
 COUNT = 2 * np.pi / 2**15
 """Of the encoders [rad]."""
-SPEED_NOISE, TORQUE_NOISE, CELL_NOISE = 0.01, 0.03, 0.5
-"""Of sensors [rad/s, Nm, N]."""
-PLACE_NOISE, TURN_NOISE, MOVE_NOISE = 3e-4, 3e-4, 4e-3
-"""Of the estimated base: place [m], orientation [rad], velocity [m/s]."""
-GYRO_NOISE, FORCE_NOISE = 2e-3, 0.04
-"""Of the IMU [rad/s, m/s^2]."""
+SPEED_NOISE, ANGLE_NOISE = 0.01, 1e-4
+"""Of encoders [rad/s, rad]."""
 FILTER = 0.003
 """Of load cells and accelerometer [s]."""
 ROPE_LENGTH = 0.16
@@ -94,9 +89,7 @@ def careful_file() -> str:
     spec.compiler.discardvisual = True
     for body in spec.bodies:
         for geom in list(body.geoms):
-            if body.name not in FEET:
-                spec.delete(geom)
-            elif not geom.contype:
+            if body.name not in FEET or not geom.contype:
                 spec.delete(geom)
             else:
                 geom.friction[0], geom.solref[0] = FLOOR, SOFT
@@ -246,7 +239,7 @@ def _driven(
     if "rope" in live:
         anchor = data.xpos[model.body(live["rope"].body).id] * [1, 1, 0] + [0.05, 0, 0]
     for k, wanted in enumerate(target):
-        read = data.qpos[7:] + drives.zero + 1e-4 * noise.normal(size=12)
+        read = data.qpos[7:] + drives.zero + ANGLE_NOISE * noise.normal(size=12)
         read = np.round(read / COUNT) * COUNT
         speed = data.qvel[6:] + SPEED_NOISE * noise.normal(size=12)
         past.append(drives.gains * STIFFNESS * (wanted - read) - DAMPING * speed)
@@ -279,7 +272,7 @@ def _driven(
                     data.qvel[3:6] + bias[:3],
                     felt + bias[3:],
                     cells.ravel(),
-                ]  # fmt: skip
+                ]
             )
         data.ctrl[:] = asked
         if not live:
@@ -288,7 +281,7 @@ def _driven(
         for _ in range(TICK):
             _disturb(model, data, live, bristle, anchor)
             mujoco.mj_step(model, data)
-    return _logged(np.array(rows), noise, run.name)
+    return logged(np.array(rows), noise, run.name, STIFFNESS, DAMPING)
 
 
 def _lagging(model: mujoco.MjModel, data: mujoco.MjData, torques: np.ndarray) -> None:
@@ -367,37 +360,3 @@ def _load(model: mujoco.MjModel, body: int, mass: float, at: np.ndarray) -> None
     model.body_inertia[body] = values
     model.body_ipos[body] = (old * centre + mass * at) / (old + mass)
     model.body_mass[body] = old + mass
-
-
-def _logged(table: np.ndarray, noise: np.random.Generator, label: str) -> Recording:
-    """The log with the noise of its sensors."""
-    widths = np.cumsum([1, 12, 12, 12, 12, 12, 3, 4, 3, 3, 3])
-    (clock, target, read, speed, command, torque, place, turn, move, gyro, felt, cells) = np.split(
-        table, widths, axis=1
-    )
-
-    def noisy(values: np.ndarray, size: float) -> np.ndarray:
-        return values + size * noise.normal(size=values.shape)
-
-    turn = noisy(turn, TURN_NOISE / 2)
-    turn /= np.linalg.norm(turn, axis=1, keepdims=True)
-    motors = tuple(name.removesuffix("_joint") for name in JOINTS)
-    signals: dict[str, np.ndarray] = {}
-    for kind, names, values in (
-        ("position_target", JOINTS, target),
-        ("position", JOINTS, read),
-        ("velocity", JOINTS, speed),
-        ("motor_torque_command", motors, command),
-        ("motor_torque", motors, noisy(torque, TORQUE_NOISE)),
-        ("base_position", tuple("xyz"), noisy(place, PLACE_NOISE)),
-        ("base_orientation", tuple("wxyz"), turn),
-        ("base_velocity", tuple("xyz"), noisy(move, MOVE_NOISE)),
-        ("gyro", tuple("xyz"), noisy(gyro, GYRO_NOISE)),
-        ("accelerometer", tuple("xyz"), noisy(felt, FORCE_NOISE)),
-        ("contact_force", tuple(f"{f}_{a}" for f in FEET for a in "xyz"), noisy(cells, CELL_NOISE)),
-    ):
-        signals |= {f"{kind}/{name}": values[:, i] for i, name in enumerate(names)}
-    gains = {
-        joint: [float(k), float(d)] for joint, k, d in zip(JOINTS, STIFFNESS, DAMPING, strict=True)
-    }
-    return Recording(label, clock[:, 0], signals, {"gains": gains, "base": "floating"})

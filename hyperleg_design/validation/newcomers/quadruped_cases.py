@@ -5,7 +5,7 @@ the truth.
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
 
@@ -13,7 +13,8 @@ from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Rec
 from hyperleg_design.validation.newcomers import quadruped
 from hyperleg_design.validation.newcomers.names import ALIKE, EFFECTS, SIZES
 from hyperleg_design.validation.newcomers.plant import Wrong
-from hyperleg_design.validation.newcomers.quadruped import FEET, JOINTS, Run
+from hyperleg_design.validation.newcomers.quadruped import Run
+from hyperleg_design.validation.newcomers.quadruped_log import FEET, JOINTS
 
 USUAL = ("sway", "trot")
 """Motions of tests and references where a case says nothing else."""
@@ -131,8 +132,19 @@ def material(data: Path, plan: QuadrupedPlan, duration: float = 10.0) -> tuple[M
         _healthy(Run(motion, 1000 * build + 10 * k, build, build, f"healthy_{k}", duration))
         for k, motion in enumerate(plan.references)
     )
-    robot = quadruped.plain_file() if plan.plain else quadruped.careful_file()
-    return Material(robot, tests, references), plan.truth
+    if not plan.plain:
+        return Material(quadruped.careful_file(), tests, references), plan.truth
+    tests, references = (tuple(map(_by_joint, logs)) for logs in (tests, references))
+    return Material(quadruped.plain_file(), tests, references), plan.truth
+
+
+def _by_joint(log: Recording) -> Recording:
+    """A copy whose motors are named after their joints: the URDF as it comes names none."""
+    columns = {
+        f"{name}_joint" if name.startswith("motor_torque") else name: values
+        for name, values in log.signals.items()
+    }
+    return replace(log, signals=columns)
 
 
 @lru_cache(maxsize=2 * ROBOTS)
