@@ -33,7 +33,7 @@ PADS = 0.1
 alike)."""
 LEAST_TICKS, LEAST_CONTACTS = 200, 4
 """Of a pad under load in a log; pads, each log's for itself, whose scatter gives the standard
-error."""
+error. Of a foot with fewer pads, such as a ball, each stands for several stretches of its log."""
 VARIED = 4.0
 """Standard deviation of a pad's load, at least [N]."""
 DEEPEST = 0.05
@@ -88,10 +88,10 @@ def sinks(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> tup
 def _sink(
     foot: str, place: int, signals: Sequence[Signals], references: Sequence[Signals]
 ) -> Underfoot | None:
-    logs = [bearings(one, place) for one in signals]
+    logs = [_apart(bearings(one, place)) for one in signals]
     pads = [pad for own in logs for pad in own]
     given = _compliance(pads)
-    healthy = _compliance([pad for one in references for pad in bearings(one, place)])
+    healthy = _compliance([pad for one in references for pad in _apart(bearings(one, place))])
     if given is None:
         return None
     scale, error = given
@@ -177,6 +177,22 @@ def _compliance(pads: Sequence[Bearing]) -> tuple[float, float] | None:
     mean = float(np.average(each, weights=weight))
     share = weight / weight.sum()
     return mean, float(np.sqrt(np.sum(share**2 * (each - mean) ** 2) * len(pads) / (len(pads) - 1)))
+
+
+def _apart(pads: Sequence[Bearing]) -> list[Bearing]:
+    """Pads of a foot in a log, cut into stretches of time where they are too few for a scatter."""
+    if not pads or len(pads) >= LEAST_CONTACTS:
+        return list(pads)
+    count = -(-LEAST_CONTACTS // len(pads))
+    cut = [
+        replace(pad, load=load, height=height, nominal=nominal)
+        for pad in pads
+        for load, height, nominal in zip(
+            *(np.array_split(part, count) for part in (pad.load, pad.height, pad.nominal)),
+            strict=True,
+        )
+    ]
+    return [pad for pad in cut if float(pad.load.std()) >= VARIED]
 
 
 def _half(pad: Bearing, late: bool) -> Bearing | None:

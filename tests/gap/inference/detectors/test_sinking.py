@@ -5,7 +5,14 @@ nothing of the package.
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.inference.detectors.sinking import bearings, sinks
+from hyperleg_design.gap.inference.detectors.sinking import (
+    LEAST_CONTACTS,
+    Bearing,
+    _apart,
+    _compliance,
+    bearings,
+    sinks,
+)
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.ground import footings
 from hyperleg_design.gap.signals.loading import load_subject
@@ -136,3 +143,21 @@ def test_two_logs_foretell_each_other(subject, nominal):
         one.closed > 0.8
         for one in found(subject, *(standing(subject, 4 * nominal, seed=s) for s in (1, 2)))
     )
+
+
+def test_a_foot_with_one_pad_tells_by_stretches_of_its_log():
+    """As the ball of a quadruped's leg, which is one pad in each log."""
+    rng, time = np.random.default_rng(2), np.arange(0, 8, 0.005)
+    load = MEAN + CHANGE * np.sin(2 * np.pi * 0.7 * time)
+    height = 0.02 - 2e-5 * load + 2e-4 * rng.normal(size=len(time))
+    pad = Bearing(load, height, -1e-5 * load)
+    assert _compliance([pad]) is None
+    stretches = _apart([pad])
+    assert len(stretches) == LEAST_CONTACTS
+    np.testing.assert_array_equal(np.concatenate([one.load for one in stretches]), load)
+    scale, error = _compliance(stretches)
+    assert scale == pytest.approx(2.0, abs=4 * error)
+    assert error < 0.1
+    still = np.where(time < 4, MEAN, load)
+    assert len(_apart([Bearing(still, height, -1e-5 * still)])) == LEAST_CONTACTS / 2
+    assert _apart([pad] * LEAST_CONTACTS) == [pad] * LEAST_CONTACTS
