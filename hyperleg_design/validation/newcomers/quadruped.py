@@ -152,6 +152,42 @@ def built(build: int) -> tuple[mujoco.MjModel, np.ndarray, np.ndarray, np.ndarra
     )
 
 
+@dataclass(frozen=True, eq=False)
+class Session:
+    """What is otherwise in one session."""
+
+    rubbing: np.ndarray
+    """Of dry friction, as damping and torques by joint over that of the robot `(12,)`."""
+    viscous: np.ndarray
+    floor: float
+    """Of the floor's friction."""
+    torques: np.ndarray
+    zero: np.ndarray
+    """Of the encoders, to be added `(12,)` [rad]."""
+    bias: np.ndarray
+    """Of gyro and accelerometer `(6,)` [rad/s, m/s^2]."""
+
+
+def session(seed: int) -> Session:
+    """Draw what is otherwise in a session.
+
+    Args:
+        seed: of the session.
+
+    Returns:
+        The deviations.
+    """
+    rng = np.random.default_rng(seed)
+    return Session(
+        1 + FRICTION_CHANGES * rng.normal(size=12),
+        1 + FRICTION_CHANGES * rng.normal(size=12),
+        1 + FLOOR_CHANGES * float(rng.normal()),
+        1 + TORQUE_CHANGES * rng.normal(size=12),
+        ZERO_CHANGES * rng.normal(size=12),
+        np.r_[GYRO_BIAS * rng.normal(size=3), FORCE_BIAS * rng.normal(size=3)],
+    )
+
+
 def simulate(wrongs: Sequence[Wrong], run: Run) -> Recording:
     """A log of a quadruped with something wrong.
 
@@ -163,13 +199,11 @@ def simulate(wrongs: Sequence[Wrong], run: Run) -> Recording:
         ValueError: something is wrong that no quadruped knows.
     """
     model, zero, torques, gains = built(run.build)
-    day = np.random.default_rng(run.session)
-    model.dof_frictionloss[6:] *= 1 + FRICTION_CHANGES * day.normal(size=12)
-    model.dof_damping[6:] *= 1 + FRICTION_CHANGES * day.normal(size=12)
-    model.geom_friction[:, 0] *= 1 + FLOOR_CHANGES * day.normal()
-    torques = torques * (1 + TORQUE_CHANGES * day.normal(size=12))
-    zero = zero + ZERO_CHANGES * day.normal(size=12)
-    bias = np.r_[GYRO_BIAS * day.normal(size=3), FORCE_BIAS * day.normal(size=3)]
+    day = session(run.session)
+    model.dof_frictionloss[6:] *= day.rubbing
+    model.dof_damping[6:] *= day.viscous
+    model.geom_friction[:, 0] *= day.floor
+    torques, zero, bias = torques * day.torques, zero + day.zero, day.bias.copy()
     soles = [int(model.body(name).geomadr[0]) for name in FEET]
     late, live = 0, {}
     for wrong in wrongs:

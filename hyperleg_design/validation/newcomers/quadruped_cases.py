@@ -22,8 +22,6 @@ OTHER = ("squat", "crawl")
 """Motions that no reference has."""
 ROBOTS = 3
 """Robots that were built; each case has one of them."""
-GROUND = {"slippery": "ground_friction", "soft": "ground_compliance"}
-"""Effects of the catalogue at feet."""
 AXES = ("gyro_x", "gyro_y", "gyro_z")
 
 
@@ -47,14 +45,19 @@ class QuadrupedPlan:
     @property
     def truth(self) -> Truth:
         """What is wrong."""
-        faults = tuple(_fault(wrong) for wrong in self.wrongs)
+        faults = tuple(_fault(wrong, self) for wrong in self.wrongs)
         return Truth(
             faults, bool(self.references), identified=not self.plain, everywhere=self.everywhere
         )
 
     @property
+    def build(self) -> int:
+        """Seed of how its robot was built, and of the references' session."""
+        return 40 + self.seed % ROBOTS
+
+    @property
     def seed(self) -> int:
-        """Of the motions and the noise of its tests, and of what robot it has."""
+        """Of the motions, the noise and the session of its tests, and of what robot it has."""
         return zlib.crc32(self.label.encode()) // 16
 
 
@@ -120,16 +123,24 @@ def material(data: Path, plan: QuadrupedPlan, duration: float = 10.0) -> tuple[M
         plan: of the case.
         duration: of each log [s].
     """
-    build = 40 + plan.seed % ROBOTS
     tests = tuple(
         quadruped.simulate(
             plan.wrongs,
-            Run(motion, plan.seed + 10 * k, build, plan.seed, f"test_{k}", duration),
+            Run(motion, plan.seed + 10 * k, plan.build, plan.seed, f"test_{k}", duration),
         ).declared(session="test")
         for k, motion in enumerate(plan.tests)
     )
     references = tuple(
-        _healthy(Run(motion, 1000 * build + 10 * k, build, build, f"healthy_{k}", duration))
+        _healthy(
+            Run(
+                motion,
+                1000 * plan.build + 10 * k,
+                plan.build,
+                plan.build,
+                f"healthy_{k}",
+                duration,
+            )
+        )
         for k, motion in enumerate(plan.references)
     )
     if not plan.plain:
@@ -153,27 +164,29 @@ def _healthy(run: Run) -> Recording:
     return quadruped.simulate((), run).declared(session="healthy")
 
 
-def _fault(wrong: Wrong) -> Fault:
-    """What is wrong in the words of the catalogue."""
-    what, size = wrong.what, wrong.size
-    if what in GROUND:
-        values = {"scale": size} if what == "slippery" else {}
-        return Fault(GROUND[what], (FEET[wrong.place],), values)
+def _fault(wrong: Wrong, plan: QuadrupedPlan) -> Fault:
+    """What is wrong in the words of the catalogue, over what the references' session had."""
+    what, j, size = wrong.what, wrong.place, wrong.size
+    now, then = quadruped.session(plan.seed), quadruped.session(plan.build)
+    if what == "slippery":
+        return Fault("ground_friction", (FEET[j],), {"scale": size * now.floor / then.floor})
+    if what == "soft":
+        return Fault("ground_compliance", (FEET[j],))
     if what == "gyro":
-        return Fault("imu_bias", ("imu", "sensor", "gyro", "robot"), {AXES[wrong.place]: size})
+        bias = size + float(now.bias[j] - then.bias[j])
+        return Fault("imu_bias", ("imu",), {AXES[j]: bias})
     if what not in EFFECTS:
         return Fault(what, (), listed=False)
-    joint = JOINTS[wrong.place]
-    places: tuple[str, ...] = (joint, joint.removesuffix("_joint"))
+    places: tuple[str, ...] = (JOINTS[j], JOINTS[j].removesuffix("_joint"))
     if what == "load":
-        places = (
-            (wrong.body, "base") if wrong.body == "trunk" else (wrong.body, f"{wrong.body}_joint")
-        )
+        places = (wrong.body, "base" if wrong.body == "trunk" else f"{wrong.body}_joint")
     if what == "late":
         places = ("robot",)
-    values = {SIZES[what]: float(size)} if what in SIZES else {}
-    if what == "rotor":
-        values = {"inertia": float(size)}
-    if what == "rough":
-        values = {"torque": float((size - 1) * quadruped.RUBBING)}
+    values = {
+        "dry": {"torque": size + quadruped.RUBBING * float(now.rubbing[j] - then.rubbing[j])},
+        "rough": {"torque": quadruped.RUBBING * float(size * now.rubbing[j] - then.rubbing[j])},
+        "weak": {"scale": size * float(now.torques[j] / then.torques[j])},
+        "zero": {"offset": size + float(now.zero[j] - then.zero[j])},
+        "rotor": {"inertia": size},
+    }.get(what, {SIZES[what]: size} if what in SIZES else {})
     return Fault(EFFECTS[what], places, values, tuple((e, places) for e in ALIKE.get(what, ())))

@@ -46,18 +46,19 @@ def test_every_place_is_a_name_of_the_robot_and_every_effect_is_of_the_catalogue
                 assert set(fault.parameters) <= told
 
 
-def test_values_are_those_that_the_plant_is_given():
+def test_values_are_over_what_the_references_had():
     (fault,) = plan("load-trunk").truth.faults
     assert fault.parameters == {"mass": 0.6}
-    (fault,) = plan("slippery-foot").truth.faults
-    assert (fault.effect, fault.places, fault.parameters) == (
-        "ground_friction",
-        ("FR_foot",),
-        {"scale": 0.3},
-    )
-    faults = plan("rough-everywhere").truth.faults
-    assert len(faults) == 12
-    assert faults[0].parameters["torque"] == pytest.approx(1.5 * quadruped.RUBBING)
+    slippery = plan("slippery-foot")
+    (fault,) = slippery.truth.faults
+    assert (fault.effect, fault.places) == ("ground_friction", ("FR_foot",))
+    now, then = (quadruped.session(seed) for seed in (slippery.seed, slippery.build))
+    assert fault.parameters["scale"] == pytest.approx(0.3 * now.floor / then.floor)
+    everywhere = plan("rough-everywhere")
+    now, then = (quadruped.session(seed) for seed in (everywhere.seed, everywhere.build))
+    told = [fault.parameters["torque"] for fault in everywhere.truth.faults]
+    assert told == pytest.approx(0.25 * (2.5 * now.rubbing - then.rubbing))
+    assert told == pytest.approx([1.5 * quadruped.RUBBING] * 12, abs=0.12)
 
 
 def test_logs_hold_what_the_page_of_the_format_asks_for_and_references_are_shared():
