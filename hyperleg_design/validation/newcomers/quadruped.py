@@ -32,8 +32,9 @@ RUBBING, VISCOUS, ROTOR = 0.25, 0.06, 0.009
 """Dry friction [Nm], damping [Nms/rad] and rotor inertia [kg m^2] of all joints."""
 LARGEST = 33.5
 """Torque of all drives [Nm]."""
-FLOOR, SOFT = 0.8, 0.011
-"""Friction of the floor, and time in which contacts settle [s]."""
+FLOOR, SOFT, SETTLING = 0.8, 0.0175, 0.011
+"""Friction of the floor, and time in which contacts settle, of the file and of the plant [s]: with
+the plant's cones and impedances both give as much under a standing robot."""
 STEP, TICK, LOGGED = 0.0005, 5, 2
 """Of the simulation [s]; its steps in one of the controller; ticks of that in one of the log."""
 LAG = 0.002
@@ -50,7 +51,7 @@ SPEED_NOISE, ANGLE_NOISE = 0.01, 1e-4
 """Of encoders [rad/s, rad]."""
 FILTER = 0.003
 """Of load cells and accelerometer [s]."""
-ROPE_LENGTH = 0.16
+ROPE_LENGTH = 0.13
 """Of a rope between a calf and the point of the floor below it, before it pulls [m]."""
 BRISTLE = 0.05
 """Turn over which a joint with hysteresis yields [rad]."""
@@ -137,6 +138,7 @@ def built(build: int) -> tuple[mujoco.MjModel, np.ndarray, np.ndarray, np.ndarra
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_IMPLICIT
     model.opt.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     model.opt.impratio = 5.0
+    model.geom_solref[:, 0] = SETTLING
     model.geom_solimp[:, :3] = 0.9, 0.96, 0.002
     share = 1 + MASSES * rng.normal(size=model.nbody)
     model.body_mass[:] *= share

@@ -14,7 +14,13 @@ from hyperleg_design.validation.newcomers import quadruped
 from hyperleg_design.validation.newcomers.plant import Wrong
 from hyperleg_design.validation.newcomers.quadruped import LAG, Run, built, careful_file, simulate
 from hyperleg_design.validation.newcomers.quadruped_log import FEET, JOINTS
-from hyperleg_design.validation.newcomers.quadruped_motion import MOTIONS
+from hyperleg_design.validation.newcomers.quadruped_motion import (
+    HEIGHT,
+    MOTIONS,
+    SOLE,
+    STANCE,
+    joint_angles,
+)
 
 MOTORS = tuple(name.removesuffix("_joint") for name in JOINTS)
 
@@ -71,6 +77,30 @@ def test_the_file_is_the_description_with_friction_rotors_and_a_floor():
     assert careful.dof_armature[6:] == pytest.approx(quadruped.ROTOR)
 
 
+def test_the_floor_gives_under_a_standing_foot_as_the_file_says():
+    """Cones and impedances of the plant are not the file's, so that its contacts settle faster."""
+    slopes = []
+    for model in (mujoco.MjModel.from_xml_string(careful_file()), built(11)[0]):
+        data, force = mujoco.MjData(model), np.zeros(6)
+        targets = joint_angles(np.column_stack([STANCE, np.full(4, SOLE - HEIGHT)])[None])[0]
+        quadruped._stand(model, data, targets)
+        deep = []
+        for load in (0.0, 20.0):
+            data.xfrc_applied[model.body("trunk").id, 2] = -load
+            for _ in range(round(0.5 / model.opt.timestep)):
+                data.ctrl[:] = quadruped.STIFFNESS * (targets - data.qpos[7:])
+                data.ctrl[:] -= quadruped.DAMPING * data.qvel[6:]
+                mujoco.mj_step(model, data)
+            total = 0.0
+            for index in range(data.ncon):
+                mujoco.mj_contactForce(model, data, index, force)
+                total += force[0]
+            deep.append((-np.mean([data.contact[i].dist for i in range(data.ncon)]), total))
+        (depth, force_below), (more, force_above) = deep
+        slopes.append((more - depth) / (force_above - force_below))
+    assert slopes[1] == pytest.approx(slopes[0], rel=0.3)
+
+
 def test_torques_lag_and_a_weak_motor_needs_more():
     log = run(motion="trot", duration=4.0)
     asked, given = (log.signals[f"{k}/FR_calf"] for k in ("motor_torque_command", "motor_torque"))
@@ -86,7 +116,7 @@ def test_torques_lag_and_a_weak_motor_needs_more():
     ("wrong", "column", "least"),
     [
         (Wrong("dry", 8, 1.0), "motor_torque/RR_calf", 0.1),
-        (Wrong("zero", 5, 0.04), "position/FL_calf", 0.02),
+        (Wrong("zero", 5, 0.04), "base_orientation/x", 1e-3),
         (Wrong("gain", 9, 0.5), "motor_torque/RL_hip", 0.05),
         (Wrong("lossy", 4, 0.3), "motor_torque/FL_thigh", 0.05),
         (Wrong("hysteresis", 1, 1.5), "motor_torque/FR_thigh", 0.05),
@@ -96,7 +126,7 @@ def test_torques_lag_and_a_weak_motor_needs_more():
             1,
         ),
         (Wrong("push", size=30.0, body="trunk"), "contact_force/FR_foot_y", 1.0),
-        (Wrong("rope", size=600.0, body="RR_calf"), "contact_force/RR_foot_z", 0.5),
+        (Wrong("rope", size=400.0, body="RR_calf"), "contact_force/RR_foot_z", 2.0),
         (Wrong("soft", 3, 4.0), "base_position/z", 1e-4),
         (Wrong("tilt", size=0.05), "contact_force/FR_foot_x", 0.5),
         (Wrong("lost", size=0.3), "motor_torque/FR_calf", 0.02),
