@@ -207,7 +207,8 @@ def simulate(wrongs: Sequence[Wrong], run: Run) -> Recording:
     model.geom_friction[:, 0] *= day.floor
     torques, zero, bias = torques * day.torques, zero + day.zero, day.bias.copy()
     soles = [int(model.body(name).geomadr[0]) for name in FEET]
-    late, live = 0, {}
+    late = 0
+    live: dict[str, Wrong] = {}
     for wrong in wrongs:
         j, x = wrong.place, wrong.size
         match wrong.what:
@@ -263,15 +264,17 @@ def _driven(
 ) -> Recording:
     """Run the loop of controller and simulation, and log it."""
     rng, noise = np.random.default_rng(run.seed), np.random.default_rng(run.seed + 1)
-    data, ticks = mujoco.MjData(model), int(run.duration / STEP / TICK)
-    tick = STEP * TICK
-    target = MOTIONS[run.motion](rng, np.arange(ticks) * tick)
+    data, tick = mujoco.MjData(model), STEP * TICK
+    target = MOTIONS[run.motion](rng, np.arange(round(run.duration / tick)) * tick)
     _stand(model, data, target[0])
     filtered, trunk = 1 - np.exp(-tick / FILTER), model.body("trunk").id
     _lagging(model, data, drives.torques)
-    bristle, past = np.zeros(12), []
-    cells, felt, held, rows = np.zeros((4, 3)), np.array([0, 0, 9.81]), np.zeros(12), []
-    kept, anchor = 0, np.zeros(3)
+    bristle = np.zeros(12)
+    past: list[np.ndarray] = []
+    rows: list[np.ndarray] = []
+    cells, felt, held = np.zeros((4, 3)), np.array([0, 0, 9.81]), np.zeros(12)
+    kept, lost = 0, live["lost"].size if "lost" in live else 0.0
+    anchor = np.zeros(3)
     if "rope" in live:
         anchor = data.xpos[model.body(live["rope"].body).id] * [1, 1, 0] + [0.05, 0, 0]
     for k, wanted in enumerate(target):
@@ -280,12 +283,8 @@ def _driven(
         speed = data.qvel[6:] + SPEED_NOISE * noise.normal(size=12)
         past.append(drives.gains * STIFFNESS * (wanted - read) - DAMPING * speed)
         asked = np.clip(past[max(0, len(past) - 1 - drives.late)], -LARGEST, LARGEST)
-        if "lost" in live:
-            kept = (
-                kept - 1
-                if kept > 0
-                else int(rng.integers(1, 6)) * (rng.uniform() < live["lost"].size)
-            )
+        if lost:
+            kept = kept - 1 if kept > 0 else int(rng.integers(1, 6)) * (rng.uniform() < lost)
             asked = held if kept > 0 else asked
         if k == 0:
             data.act[:] = asked
