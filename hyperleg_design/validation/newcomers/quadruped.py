@@ -382,9 +382,9 @@ def _forces(model: mujoco.MjModel, data: mujoco.MjData, soles: list[int]) -> np.
 
 def _load(model: mujoco.MjModel, body: int, mass: float, at: np.ndarray) -> None:
     """Put a point mass on a body."""
-    axes = np.zeros(9)
-    mujoco.mju_quat2Mat(axes, model.body_iquat[body])
-    axes = axes.reshape(3, 3)
+    flat = np.zeros(9)
+    mujoco.mju_quat2Mat(flat, model.body_iquat[body])
+    axes = flat.reshape(3, 3)
     old, centre = float(model.body_mass[body]), model.body_ipos[body].copy()
     away = at - centre
     inertia = axes @ np.diag(model.body_inertia[body]) @ axes.T
