@@ -273,7 +273,7 @@ def _driven(
     past: list[np.ndarray] = []
     rows: list[np.ndarray] = []
     cells, felt, held = np.zeros((4, 3)), np.array([0, 0, 9.81]), np.zeros(12)
-    kept, lost = 0, live["lost"].size if "lost" in live else 0.0
+    skipped, lost = 0, live["lost"].size if "lost" in live else 0.0
     anchor = np.zeros(3)
     if "rope" in live:
         anchor = data.xpos[model.body(live["rope"].body).id] * [1, 1, 0] + [0.05, 0, 0]
@@ -284,8 +284,10 @@ def _driven(
         past.append(drives.gains * STIFFNESS * (wanted - read) - DAMPING * speed)
         asked = np.clip(past[max(0, len(past) - 1 - drives.late)], -LARGEST, LARGEST)
         if lost:
-            kept = kept - 1 if kept > 0 else int(rng.integers(1, 6)) * (rng.uniform() < lost)
-            asked = held if kept > 0 else asked
+            skipped = (
+                skipped - 1 if skipped > 0 else int(rng.integers(1, 6)) * (rng.uniform() < lost)
+            )
+            asked = held if skipped > 0 else asked
         if k == 0:
             data.act[:] = asked
             cells = _forces(model, data, soles)
