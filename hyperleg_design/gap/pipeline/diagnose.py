@@ -167,6 +167,7 @@ def diagnose_signals(
     say = show or (lambda _: None)
     if not signals:
         raise InputError("diagnose", "logs", None, "are missing: give at least one log")
+    rules = rules or InferenceRules()
     say("noise, discrepancy and the hypotheses of the catalogue")
     told = judge_signals(
         signals,
@@ -176,12 +177,12 @@ def diagnose_signals(
             for place in screen.places(signals[0].subject, effects)
             if place[0] not in (SLIPPERY, SOFT)  # feet tell these by themselves, see `_beside`
         ],
-        rules or InferenceRules(),
+        rules,
         seed=seed,
         threads=threads,
         checks=checks,
     )
-    return _beside(told, signals, references, effects)
+    return _beside(told, signals, references, effects, rules)
 
 
 def _beside(
@@ -189,6 +190,7 @@ def _beside(
     signals: Sequence[Signals],
     references: Sequence[Signals],
     effects: Sequence[str] | None,
+    rules: InferenceRules,
 ) -> Diagnosis:
     """With what feet and the IMU tell that is in no residual."""
     for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
@@ -196,5 +198,5 @@ def _beside(
             told = of_feet(told, tell(signals, references))
     if effects is not None and PLACE[0] not in effects:
         return told
-    offset = imu_offset(signals, references)
+    offset = imu_offset(signals, references, rules.cause.usual)
     return told if offset is None else of_imu(told, offset)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects.sensors.imu_bias import IMU, ImuBias
+from hyperleg_design.gap.effects.sensors.imu_bias import ACCELEROMETER, GYRO, IMU, ImuBias
 from hyperleg_design.gap.model.mechanism import quaternion_rotation
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.base_motion import known, on_ticks, orientation, spin
@@ -27,9 +27,8 @@ if TYPE_CHECKING:
 
 PLACE = ImuBias.identifier, IMU
 OFFSET = "offset"
-CALIBRATED = 0.25
-"""Of what data sheets allow a sensor that nobody calibrated (`ImuBias`), from which an error is a
-finding."""
+USUAL = np.repeat([GYRO, ACCELEROMETER], 3)
+"""Standard deviations of the errors that calibrated sensors have from session to session."""
 CERTAIN = 5.0
 """Its standard errors, at least."""
 PIECE = 1.0
@@ -87,13 +86,16 @@ class Offset:
         return f"differs from {source} by a constant: {values} {self.unit} in its own axes"
 
 
-def imu_offset(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> Offset | None:
+def imu_offset(
+    signals: Sequence[Signals], references: Sequence[Signals] = (), beyond: float = 3.0
+) -> Offset | None:
     """Constant errors beyond what is usual; None where there are none, or the base's motion is not
     known from elsewhere.
 
     Args:
         signals: logs to be diagnosed.
         references: logs of the healthy robot; an error that they have, too, is none of these.
+        beyond: usual deviations from which an error is a finding, `CauseRules.usual`.
     """
     means, errors, halves = (np.array(part) for part in zip(*map(_means, signals), strict=True))
     mean, error = _together(means, errors)
@@ -106,16 +108,13 @@ def imu_offset(signals: Sequence[Signals], references: Sequence[Signals] = ()) -
             np.where(told, mean - healthy, mean),
             np.where(told, np.hypot(error, unsure), error),
         )
-    usual = np.array([p.typical for p in ImuBias.parameters])
-    clear = (
-        np.isfinite(mean) & (np.abs(mean) > CALIBRATED * usual) & (np.abs(mean) > CERTAIN * error)
-    )
+    over = np.abs(mean) / USUAL
+    clear = np.isfinite(mean) & (over > beyond) & (np.abs(mean) > CERTAIN * error)
     if not clear.any():
         return None
     leans = _leans(signals[0], mean[3:]) if not clear[:3].any() else 0.0
     if 0 < leans < LEANING:
         return None
-    over = np.abs(mean) / usual
     part = (
         slice(0, 3)
         if np.nanmax(over[:3], initial=0) >= np.nanmax(over[3:], initial=0)

@@ -156,3 +156,14 @@ def test_without_both_nothing_is_said(swaying, subject, lacking):
         signals={c: v for c, v in log.signals.items() if not c.startswith(f"{lacking}/")}
     )
     assert found(subject, less) is None
+
+
+def test_an_error_is_a_finding_from_three_usual_ones_on(swaying, subject):
+    """Of 0.003 rad/s and 0.05 m/s^2, by which calibrated sensors differ from session to session."""
+    assert found(subject, off(swaying, gyro=(0.007, 0, 0), felt=(0, 0, 0.11))) is None
+    assert found(subject, off(swaying, gyro=(0.012, 0, 0))).kind == "gyro"
+    assert found(subject, off(swaying, felt=(0, 0, 0.2))).kind == "accelerometer"
+    both = found(
+        subject, off(swaying, gyro=(0.012, 0, 0)), references=[off(swaying, (0.006, 0, 0))]
+    )
+    assert both is None
