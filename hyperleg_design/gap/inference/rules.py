@@ -133,7 +133,8 @@ class PosteriorRules:
     alike: float = 2.5
     """Difference of log posterior within which rivals count as one set [nat] (developed)."""
     main_part: float = 0.5
-    """Share of the gap that causes must close, else the answer is `unknown` [-] (assumed)."""
+    """Share of the gap that causes must close, else the answer is `unknown`, and that other logs
+    must foretell of what feet and the IMU tell [-] (assumed)."""
     remainder: float = 0.1
     """Share of the gap that is left, from which a remainder is reported [-] (assumed)."""
     interval: float = 1.4

@@ -192,11 +192,15 @@ def _beside(
     effects: Sequence[str] | None,
     rules: InferenceRules,
 ) -> Diagnosis:
-    """With what feet and the IMU tell that is in no residual."""
+    """With what feet and the IMU tell that is in no residual, where other logs, or the other half
+    of one, foretell the main part of it.
+    """
+    least = rules.posterior.main_part
     for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
         if effects is None or effect in effects:
-            told = of_feet(told, tell(signals, references))
+            found = tell(signals, references)
+            told = of_feet(told, tuple(one for one in found if one.closed >= least))
     if effects is not None and PLACE[0] not in effects:
         return told
     offset = imu_offset(signals, references, rules.cause.usual)
-    return told if offset is None else of_imu(told, offset)
+    return told if offset is None or offset.closed < least else of_imu(told, offset)

@@ -1,5 +1,6 @@
 """What a diagnosis makes of causes that no residual shows."""
 
+import importlib
 from dataclasses import replace
 
 import pytest
@@ -162,3 +163,14 @@ def test_soft_ground_that_creeps_is_not_slippery_but_one_that_feet_slide_on_may_
         (),
         [("coulomb_friction", "hip"), *soft],
     )
+
+
+def test_what_other_logs_do_not_foretell_by_half_is_not_told(robot_files, monkeypatch):
+    """Of a foot that sinks or slides now and then, without a rule."""
+    pipeline = importlib.import_module("hyperleg_design.gap.pipeline.diagnose")
+    monkeypatch.setattr(pipeline, "slips", lambda *_: SLIDING)
+    monkeypatch.setattr(pipeline, "sinks", lambda *_: tuple(replace(o, left=16.0) for o in SOFT))
+    told = diagnose(
+        robot_files["coupled"], [run("healthy", s, session="today") for s in (0, 1)], threads=1
+    )
+    assert names(told.causes) == BOTH
