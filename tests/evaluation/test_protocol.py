@@ -118,4 +118,6 @@ def test_nonsense_names_file_field_and_remedy(write, text, field, remedy):
 
 def test_a_missing_protocol_lists_the_shipped():
     with pytest.raises(InputError, match="t_test, t_test_fast, walk"):
+        load_protocol("zzz")
+    with pytest.raises(InputError, match=r"did you mean walk\?"):
         load_protocol("wlk")
