@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class RobotDesign:
     """A robot of any family, or a batch of robots that differ in numbers and motors only."""
 
-    family: ClassVar[str] = "hyperleg"
+    family: ClassVar[str]
     """Name of the family, as `family:` in a file says it."""
     name: str
     variant: str = ""

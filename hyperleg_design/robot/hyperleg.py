@@ -9,7 +9,7 @@ mirrored postures.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS, MOTORS, SIDES
@@ -41,6 +41,7 @@ SPRING_LEAVES = ("stiffness", "damping")
 class HyperLeg(RobotDesign):
     """A biped of HyperLeg's kind, or a batch of bipeds that differ in numbers and motors only."""
 
+    family: ClassVar[str] = "hyperleg"
     pelvis: Pelvis
     hip: Hip
     thigh: Segment

@@ -24,7 +24,7 @@ from hyperleg_design.robot.parameters.motor_paths import with_motor_paths
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_load import FAMILY, tree_design_from_mapping
 
-FAMILIES = ("hyperleg", FAMILY)
+FAMILIES = (Design.family, FAMILY)
 """What `family:` may say; a file without it is of the first one."""
 
 

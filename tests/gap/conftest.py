@@ -33,6 +33,14 @@ def robot_files(tmp_path_factory) -> dict[str, Path]:
     return found
 
 
+@pytest.fixture(scope="module")
+def signals(robot_files):
+    """A conditioned log of the healthy robot with coupled motors."""
+    import diagnosed
+
+    return diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
+
+
 @pytest.fixture(scope="session")
 def runs():
     """Logs of ten seconds of each of those robots at 200 Hz, without noise."""

@@ -63,11 +63,11 @@ def detectable(search: Search) -> tuple[Detectable, ...]:
         elif len(sizes) == 1:
             i = sizes[0]
             change = np.abs(traced[0][:, i] - effect.nulls[i])
-            if change.max() > 0:
-                plain = usual_shape(effect, place, subject, traced[0]) & (change > 0)
-                first = int(
-                    np.argmin(np.where(plain if plain.any() else change > 0, change, np.inf))
-                )
+            moved = change > 0
+            if moved.any():
+                plain = moved & usual_shape(effect, place, subject, traced[0])
+                tried = plain if plain.any() else moved
+                first = int(np.argmin(np.where(tried, change, np.inf)))
                 entries.append((name, place, i, float(change[first]), most[i], information[first]))
     found = []
     for name, place, i, unit_size, limit, own in entries:

@@ -21,9 +21,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import yaml
 
-from hyperleg_design.errors import InputError, meant
+from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.reading import read_json, read_yaml, short_name
+from hyperleg_design.robot.parameters.values import unknown
 from hyperleg_design.writing import write_text
 
 if TYPE_CHECKING:
@@ -252,8 +253,8 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
 def _only(content: Mapping[str, Any], known: tuple[str, ...], where: str, place: str) -> None:
     for key in content:
         if key not in known:
-            remedy = f"no such field; {meant(str(key), known)}"
-            raise InputError(where, f"{place}.{key}".lstrip("."), None, remedy)
+            field = f"{place}.{key}".lstrip(".")
+            raise InputError(where, field, None, unknown(str(key), list(known)))
 
 
 def _checked(where: str, place: str, identifier: Any, values: Any) -> dict[str, float]:

@@ -18,6 +18,7 @@ import numpy as np
 
 from hyperleg_design.validation.benchmark.case import Recording
 from hyperleg_design.validation.newcomers.plant import Wrong
+from hyperleg_design.validation.newcomers.recorded import recorded
 
 XML = """<mujoco model="crane"><compiler angle="degree" autolimits="true"/>
 <option timestep="0.0005" integrator="implicitfast"><flag contact="disable"/></option>
@@ -291,15 +292,10 @@ def _logged(
     """The log with the noise of its torque sensors."""
     parts = np.split(table[:, 1:], 5, axis=1)
     parts[4] = parts[4] + TORQUE_NOISE * limit * noise.normal(size=parts[4].shape)
-    signals: dict[str, np.ndarray] = {}
-    for kind, names, values in zip(
+    blocks = zip(
         ("position_target", "position", "velocity", "motor_torque_command", "motor_torque"),
         (JOINTS, JOINTS, JOINTS, MOTORS, MOTORS),
         parts,
         strict=True,
-    ):
-        signals |= {f"{kind}/{name}": values[:, i] for i, name in enumerate(names)}
-    gains = {
-        joint: [float(k), float(d)] for joint, k, d in zip(JOINTS, STIFFNESS, DAMPING, strict=True)
-    }
-    return Recording(label, table[:, 0], signals, {"gains": gains})
+    )
+    return recorded(label, table[:, 0], blocks, JOINTS, STIFFNESS, DAMPING)

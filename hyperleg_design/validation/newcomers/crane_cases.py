@@ -13,7 +13,7 @@ from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Rec
 from hyperleg_design.validation.newcomers import crane
 from hyperleg_design.validation.newcomers.crane import BODIES, JOINTS, MOTORS, Run
 from hyperleg_design.validation.newcomers.names import ALIKE, EFFECTS, SIZES
-from hyperleg_design.validation.newcomers.plant import Wrong
+from hyperleg_design.validation.newcomers.plant import Wrong, everywhere
 
 USUAL = ("picks", "waves")
 """Motions of tests and references where a case says nothing else."""
@@ -36,14 +36,9 @@ class CranePlan:
     """Whether logs hold what the controllers ask for."""
 
     @property
-    def everywhere(self) -> bool:
-        """Whether one effect acts at several joints."""
-        return len(self.wrongs) > 1 and len({wrong.what for wrong in self.wrongs}) == 1
-
-    @property
     def kind(self) -> str:
         """Which of `benchmark.case.KINDS` the case is, by its faults."""
-        return Truth(_faults(self), everywhere=self.everywhere).kind
+        return Truth(_faults(self), everywhere=everywhere(self.wrongs)).kind
 
     @property
     def build(self) -> int:
@@ -145,7 +140,7 @@ def material(data: Path, plan: CranePlan, duration: float = 12.0) -> tuple[Mater
             for k, motion in enumerate(motions)
         )
 
-    truth = Truth(_faults(plan), bool(plan.references), everywhere=plan.everywhere)
+    truth = Truth(_faults(plan), bool(plan.references), everywhere=everywhere(plan.wrongs))
     tests = logs(plan.wrongs, plan.tests, 0, "test")
     return Material(crane.XML, tests, logs((), plan.references, 100, "healthy")), truth
 

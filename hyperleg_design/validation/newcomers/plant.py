@@ -7,12 +7,14 @@ its file (masses 1.5 %, friction 8 %, zeros 1 mrad), and sensors are noisy.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
 
 from hyperleg_design.validation.benchmark.case import Recording
+from hyperleg_design.validation.newcomers.recorded import recorded
 from hyperleg_design.validation.newcomers.robots import Robot
 
 STEP, TICKS, DURATION = 0.001, 5, 14.0
@@ -41,6 +43,18 @@ class Wrong:
     """Of a load."""
     at: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Of a load, in the frame of its body [m]."""
+
+
+def everywhere(wrongs: Sequence[Wrong]) -> bool:
+    """Tell whether what is wrong is one thing at several places.
+
+    Args:
+        wrongs: all that is wrong.
+
+    Returns:
+        Whether it is.
+    """
+    return len(wrongs) > 1 and len({wrong.what for wrong in wrongs}) == 1
 
 
 def motion(robot: Robot, rng: np.random.Generator) -> np.ndarray:
@@ -346,19 +360,13 @@ def _logged(
     largest = model.actuator_ctrlrange[:, 1]
     torque = torque + TORQUE_NOISE * largest * noise.normal(size=torque.shape)
     stamps = time[:, 0] + np.clip(robot.jitter * noise.normal(size=len(time)), -1e-3, 1e-3)
-    signals: dict[str, np.ndarray] = {}
     joints = [model.joint(i).name for i in range(model.njnt)]
     motors = [model.actuator(i).name for i in range(m)]
-    for kind, names, values in (
+    blocks = (
         ("position_target", joints, target),
         ("position", joints, position),
         ("velocity", joints, velocity),
         ("motor_torque_command", motors, command),
         ("motor_torque", motors, torque),
-    ):
-        signals |= {f"{kind}/{one}": values[:, i] for i, one in enumerate(names)}
-    gains = {
-        joint: [float(k), float(d)]
-        for joint, k, d in zip(joints, robot.stiffness, robot.damping, strict=True)
-    }
-    return Recording(name, stamps, signals, {"gains": gains})
+    )
+    return recorded(name, stamps, blocks, joints, robot.stiffness, robot.damping)

@@ -12,7 +12,7 @@ from pathlib import Path
 from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
 from hyperleg_design.validation.newcomers import quadruped
 from hyperleg_design.validation.newcomers.names import ALIKE, EFFECTS, SIZES
-from hyperleg_design.validation.newcomers.plant import Wrong
+from hyperleg_design.validation.newcomers.plant import Wrong, everywhere
 from hyperleg_design.validation.newcomers.quadruped import Run
 from hyperleg_design.validation.newcomers.quadruped_log import FEET, JOINTS
 
@@ -38,16 +38,14 @@ class QuadrupedPlan:
     """Whether the robot's file is the URDF as it comes, which lacks friction and rotors."""
 
     @property
-    def everywhere(self) -> bool:
-        """Whether one effect acts at several joints."""
-        return len(self.wrongs) > 1 and len({wrong.what for wrong in self.wrongs}) == 1
-
-    @property
     def truth(self) -> Truth:
-        """What is wrong."""
+        """What is wrong, over what the references' session had."""
         faults = tuple(_fault(wrong, self) for wrong in self.wrongs)
         return Truth(
-            faults, bool(self.references), identified=not self.plain, everywhere=self.everywhere
+            faults,
+            bool(self.references),
+            identified=not self.plain,
+            everywhere=everywhere(self.wrongs),
         )
 
     @property

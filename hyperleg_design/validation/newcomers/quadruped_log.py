@@ -6,6 +6,7 @@ import numpy as np
 
 from hyperleg_design.validation.benchmark.case import Recording
 from hyperleg_design.validation.newcomers.quadruped_motion import LEGS
+from hyperleg_design.validation.newcomers.recorded import recorded
 
 JOINTS = tuple(f"{leg}_{part}_joint" for leg in LEGS for part in ("hip", "thigh", "calf"))
 FEET = tuple(f"{leg}_foot" for leg in LEGS)
@@ -45,8 +46,7 @@ def logged(
     turn = noisy(turn, TURN_NOISE / 2)
     turn /= np.linalg.norm(turn, axis=1, keepdims=True)
     motors = tuple(name.removesuffix("_joint") for name in JOINTS)
-    signals: dict[str, np.ndarray] = {}
-    for kind, names, values in (
+    blocks = (
         ("position_target", JOINTS, target),
         ("position", JOINTS, read),
         ("velocity", JOINTS, speed),
@@ -58,9 +58,5 @@ def logged(
         ("gyro", tuple("xyz"), noisy(gyro, GYRO_NOISE)),
         ("accelerometer", tuple("xyz"), noisy(felt, FORCE_NOISE)),
         ("contact_force", tuple(f"{f}_{a}" for f in FEET for a in "xyz"), noisy(cells, CELL_NOISE)),
-    ):
-        signals |= {f"{kind}/{name}": values[:, i] for i, name in enumerate(names)}
-    gains = {
-        joint: [float(k), float(d)] for joint, k, d in zip(JOINTS, stiffness, damping, strict=True)
-    }
-    return Recording(label, clock[:, 0], signals, {"gains": gains, "base": "floating"})
+    )
+    return recorded(label, clock[:, 0], blocks, JOINTS, stiffness, damping, base="floating")

@@ -1,6 +1,7 @@
 import diagnosed
 import pytest
 
+from hyperleg_design.gap.inference.nuisance import nuisance_parameters
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.search import Search
 
@@ -15,3 +16,9 @@ def search(robot_files):
         for joint in ("hip", "knee")
     ]
     return Search(evidence, InferenceRules(), places)
+
+
+@pytest.fixture(scope="module")
+def errors(signals):
+    """Nuisance parameters of that robot."""
+    return nuisance_parameters(signals.subject, signals.step)

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from causes import unbounded
 
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.crossed import healthy_share, predicted
-from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
 from hyperleg_design.gap.inference.rules import InferenceRules
 from tests.gap.inference.channels.test_channel import SCALES, dense, made
@@ -48,19 +48,7 @@ def nothing(evidence: Evidence) -> Hypothesis:
 def one_cause(evidence: Evidence, columns: np.ndarray, constant: np.ndarray | None) -> Hypothesis:
     """Unbounded; its own estimate does not matter, only its scales do."""
     k = len(columns)
-    cause = Cause(
-        "payload",
-        "foot",
-        np.zeros(k),
-        np.zeros(k),
-        np.ones(k),
-        np.full(k, -np.inf),
-        np.full(k, np.inf),
-        np.zeros(k, bool),
-        columns,
-        np.zeros(columns.shape[1]) if constant is None else constant,
-        constant is None,
-    )
+    cause = unbounded("payload", "foot", columns, constant)
     candidates = (Candidate("payload", "foot", (cause,)),)
     return replace(nothing(evidence), candidates=candidates, theta=np.full(k, np.nan))
 

@@ -2,7 +2,6 @@ from dataclasses import replace
 
 import diagnosed
 import numpy as np
-import pytest
 import robots
 
 from hyperleg_design.gap.effects import EFFECTS
@@ -15,16 +14,6 @@ from hyperleg_design.gap.inference.nuisance import (
     nuisance_parameters,
 )
 from hyperleg_design.gap.inference.nuisance_traces import traces
-
-
-@pytest.fixture(scope="module")
-def signals(robot_files):
-    return diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
-
-
-@pytest.fixture(scope="module")
-def errors(signals):
-    return nuisance_parameters(signals.subject, signals.step)
 
 
 def test_every_error_belongs_to_the_catalogue_and_to_a_place_of_the_robot(signals, errors):

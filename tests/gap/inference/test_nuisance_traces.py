@@ -28,16 +28,6 @@ from hyperleg_design.gap.signals.filtering import filtered_log
 from hyperleg_design.gap.signals.loading import load_subject
 
 
-@pytest.fixture(scope="module")
-def signals(robot_files):
-    return diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
-
-
-@pytest.fixture(scope="module")
-def errors(signals):
-    return nuisance_parameters(signals.subject, signals.step)
-
-
 def test_friction_under_load_is_no_share_of_the_measured_torque_where_the_model_has_no_friction(
     signals, errors
 ):

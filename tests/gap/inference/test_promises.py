@@ -6,9 +6,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from causes import unbounded
 
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
 from hyperleg_design.gap.inference.promises import LARGEST, Promises
 from hyperleg_design.gap.inference.rules import InferenceRules
@@ -17,24 +17,6 @@ from tests.gap.inference.channels.test_channel import made
 
 RULES = InferenceRules()
 SCALES = Scales(np.array([0.7, 1.9, 1.2, 0.4]), np.log(0.8), np.log(0.5), np.log(3.0))
-
-
-def cause(effect: str, columns: np.ndarray, constant: np.ndarray | None = None) -> Cause:
-    """Without bounds, linear unless it has a constant trace."""
-    k = len(columns)
-    return Cause(
-        effect,
-        "knee",
-        np.zeros(k),
-        np.zeros(k),
-        np.ones(k),
-        np.full(k, -np.inf),
-        np.full(k, np.inf),
-        np.zeros(k, bool),
-        columns,
-        np.zeros(columns.shape[1]) if constant is None else constant,
-        constant is None,
-    )
 
 
 @pytest.mark.parametrize("constant", [False, True])
@@ -48,12 +30,15 @@ def test_gains_are_those_of_all_columns_at_once(constant, alone):
     tested = 2 * len(channels[0].places[0])
     linear, starts = rng.standard_normal((2, size)), rng.standard_normal((3, tested))
     traces = {
-        ("friction", "knee", False): [cause("friction", linear)],
+        ("friction", "knee", False): [unbounded("friction", "knee", linear)],
         ("delay", "robot", False): (np.arange(3.0)[:, None], starts),
         ("payload", "foot", False): NotJudged("payload", "foot", "no motion"),
     }
-    acting = cause(
-        "spring", rng.standard_normal((2, size)), rng.standard_normal(size) if constant else None
+    acting = unbounded(
+        "spring",
+        "knee",
+        rng.standard_normal((2, size)),
+        rng.standard_normal(size) if constant else None,
     )
     causes = [] if alone else [acting]
     scales = (SCALES, SCALES)

@@ -1,13 +1,7 @@
-import diagnosed
 import numpy as np
 import pytest
 
 from hyperleg_design.gap.signals.filtering import filtered_log, traced
-
-
-@pytest.fixture(scope="module")
-def signals(robot_files):
-    return diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
 
 
 def test_bands_add_up_to_the_energy_below_the_cutoff(signals):

@@ -1,8 +1,6 @@
 import dataclasses
 
-import diagnosed
 import numpy as np
-import pytest
 
 from hyperleg_design.gap.signals.filtering import filtered_log
 from hyperleg_design.gap.signals.resting import (
@@ -13,11 +11,6 @@ from hyperleg_design.gap.signals.resting import (
     travelled,
 )
 from hyperleg_design.gap.signals.sliding import presliding
-
-
-@pytest.fixture(scope="module")
-def signals(robot_files):
-    return diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
 
 
 def test_a_joint_at_rest_may_stick_and_a_moving_one_does_not(signals):

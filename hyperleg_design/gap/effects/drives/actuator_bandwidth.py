@@ -84,7 +84,7 @@ class ActuatorBandwidth(MotorEffect):
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """A few lags."""
+        """Lags of a quick, a usual and a slow drive."""
         return np.array([[0.003], [0.01], [0.03]])
 
 

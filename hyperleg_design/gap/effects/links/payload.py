@@ -83,7 +83,7 @@ class Payload(InertialEffect):
 
     @override
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Of the body."""
+        """Those of the body, wherever the link's own mass is."""
         mass, (x, y, z, own_inertia) = values[:, 0], values[:, 1:].T
         inertia = (
             y * y + z * z + own_inertia,

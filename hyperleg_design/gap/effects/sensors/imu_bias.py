@@ -32,6 +32,8 @@ _ACCELEROMETER = (
 )
 GYRO, ACCELEROMETER = 0.003, 0.05
 """Usual biases [rad/s], [m/s^2]."""
+USUAL = np.repeat([GYRO, ACCELEROMETER], 3)
+"""Of all parameters `(6,)`: standard deviations of a calibrated sensor from session to session."""
 
 
 class ImuBias(Effect):
@@ -59,7 +61,7 @@ class ImuBias(Effect):
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
         """Of gyro and accelerometer."""
-        return dict.fromkeys(self.locations(subject), np.repeat([GYRO, ACCELEROMETER], 3))
+        return dict.fromkeys(self.locations(subject), USUAL)
 
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:

@@ -178,7 +178,7 @@ class ScaledRatio(Alteration):
 
     @override
     def machine(self, machine: Machine) -> Machine:
-        """With the other M."""
+        """With the other reductions from the motor to its joints."""
         scale = np.asarray(self.scale, float)[..., None]
         old = np.asarray(machine.joint_from_motor)
         place = machine.motor(self.motor)

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects.sensors.imu_bias import ACCELEROMETER, GYRO, IMU, ImuBias
+from hyperleg_design.gap.effects.sensors.imu_bias import IMU, USUAL, ImuBias
+from hyperleg_design.gap.inference.rules import CauseRules
 from hyperleg_design.gap.model.mechanism import quaternion_rotation
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.base_motion import known, on_ticks, orientation, spin
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 
 PLACE = ImuBias.identifier, IMU
 OFFSET = "offset"
-USUAL = np.repeat([GYRO, ACCELEROMETER], 3)
-"""Standard deviations of the errors that calibrated sensors have from session to session."""
 CERTAIN = 5.0
 """Its standard errors, at least."""
 PIECE = 1.0
@@ -87,7 +86,7 @@ class Offset:
 
 
 def imu_offset(
-    signals: Sequence[Signals], references: Sequence[Signals] = (), beyond: float = 3.0
+    signals: Sequence[Signals], references: Sequence[Signals] = (), beyond: float = CauseRules.usual
 ) -> Offset | None:
     """Constant errors beyond what is usual; None where there are none, or the base's motion is not
     known from elsewhere.

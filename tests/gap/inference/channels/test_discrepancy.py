@@ -1,15 +1,8 @@
 from dataclasses import replace
 
-import diagnosed
 import numpy as np
-import pytest
 
 from hyperleg_design.gap.inference.channels.discrepancy import load, shapes
-
-
-@pytest.fixture(scope="module")
-def signals(robot_files):
-    return diagnosed.conditioned(robot_files["coupled"], diagnosed.run("healthy", 0))[0]
 
 
 def test_no_shape_holds_a_measured_torque(signals):
