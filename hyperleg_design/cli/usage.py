@@ -16,7 +16,7 @@ from typing import Any
 import tyro
 
 from hyperleg_design.cli.arguments import option
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 
 ALIKE = 0.6
 """Similarity from which one name is suggested for another (assumed; difflib's default)."""
@@ -54,6 +54,13 @@ def usage_error(arguments: Sequence[str], verbs: Mapping[str, Any], parser_text:
         example = f", as in --design {stray[1]}" if "--design" in known else ""
         remedy = f"expects an option before it{example}; see {program} --help"
         return InputError("arguments", "value", stray[1], remedy)
+    choice = re.match(
+        r"invalid choice '(.*)' for argument '(\S+)'. Expected one of \((.*)\)", complaint
+    )
+    if choice:
+        names = [name for name in re.findall(r"'(.*?)'", choice[3]) if name]
+        remedy = meant(choice[1], names, f"expects one of {', '.join(names)};")
+        return InputError("arguments", choice[2], choice[1], f"{remedy} see {program} --help")
     return InputError("arguments", "", None, f"{complaint}; see {program} --help")
 
 

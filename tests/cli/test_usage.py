@@ -51,6 +51,15 @@ def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, 
             "Missing value for argument '--variant'. Expected 1 values; "
             "see hyperleg analyze --help",
         ),
+        (
+            ["evaluate", "x", "--out", "y", "--swap", "lock_too"],
+            "--swap = 'lock_too': did you mean lock_toe? see hyperleg evaluate --help",
+        ),
+        (
+            ["evaluate", "x", "--out", "y", "--swap", "wheel"],
+            "--swap = 'wheel': expects one of lock_toe, toe_motor_alone, toe_motor_to_ankle; "
+            "see hyperleg evaluate --help",
+        ),
     ],
 )
 def test_what_cannot_be_parsed_is_said_in_short(capsys, arguments, message):
