@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
@@ -193,9 +193,11 @@ def conditions_of(
     ]
     for name in names:
         if name not in fitting:
-            why = f"means nothing here: {lacking[name]}; " if name in lacking else ""
-            known = ", ".join(fitting)
-            raise InputError("robustness", "condition", name, f"{why}expects one of {known}")
+            remedy = meant(name, fitting)
+            if name in CONDITIONS:
+                why = lacking.get(name, "it is of walks only")
+                remedy = f"means nothing here: {why}; there are {', '.join(fitting)}"
+            raise InputError("robustness", "condition", name, remedy)
     return list(names) or fitting
 
 
@@ -216,7 +218,8 @@ def robustness(
         protocol: what suits the first policy's task by default.
         levels: of some conditions, in place of their own.
         workers: processes side by side.
-        progress: called with how many of how many levels are done, and the condition.
+        progress: called before each level and at the end with how many of how many levels are done,
+            and the condition.
 
     Returns:
         One row a trial: those of `trial_table`, with `condition` and `level` in front.
@@ -237,6 +240,8 @@ def robustness(
     count, done, tables = sum(map(len, chosen.values())), 0, []
     for name, values in chosen.items():
         for level in values:
+            if progress is not None:
+                progress(done, count, name)
             setting = CONDITIONS[name].setting(float(level))
             evaluations = evaluate_many(
                 policies,
@@ -251,8 +256,8 @@ def robustness(
             table.insert(1, "level", float(level))
             tables.append(table)
             done += 1
-            if progress is not None:
-                progress(done, count, name)
+    if progress is not None:
+        progress(done, count, name)
     return pd.concat(tables, ignore_index=True)
 
 

@@ -90,8 +90,15 @@ def test_one_level_of_each_condition_is_the_protocols(name):
 def test_conditions_of_a_t_test_leave_walks_out():
     assert "slope" not in conditions_of((), TTestProtocol())
     assert list(CONDITIONS) == conditions_of((), WalkProtocol())
-    with pytest.raises(InputError, match="expects one of push"):
+    with pytest.raises(InputError, match="it is of walks only; there are push"):
         conditions_of(["slope"], TTestProtocol())
+
+
+def test_a_misspelt_condition_gets_the_nearest_one_that_fits():
+    with pytest.raises(InputError, match=r"'joint_frction': did you mean joint_friction\?"):
+        conditions_of(["joint_frction"], WalkProtocol())
+    with pytest.raises(InputError, match="'slop': there are push, floor_friction"):
+        conditions_of(["slop"], TTestProtocol())
 
 
 def test_curves_count_all_trials_for_arrivals_and_arrivals_for_the_rest():

@@ -57,7 +57,7 @@ def run_robustness(
         raise InputError("robustness", "", None, "expects ONNX files")
     check_output_folder(out)
     protocol = (protocol or protocol_for(load_policy(policies[0]))).changed(trials=trials)
-    with tqdm(disable=not progress, desc="robustness", unit="level") as bar:
+    with tqdm(disable=not progress, desc="robustness", unit="level", delay=0.1) as bar:
 
         def note(done: int, count: int, name: str) -> None:
             bar.total = count
