@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.evaluation.measures import OUTCOMES
 from hyperleg_design.evaluation.motion.bearing import headings
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy, policy_name
@@ -101,9 +101,7 @@ class Evaluation:
             InputError: no such measure.
         """
         if measure not in self.measures[0]:
-            raise InputError(
-                "evaluation", "measure", measure, f"there are {', '.join(self.measures[0])}"
-            )
+            raise InputError("evaluation", "measure", measure, meant(measure, self.measures[0]))
         return np.array([row[measure] for row in self.measures])
 
 
@@ -278,9 +276,7 @@ def by_checkpoint(table: pd.DataFrame, measure: str) -> dict[str, list[np.ndarra
         InputError: no such column.
     """
     if measure not in table:
-        raise InputError(
-            "evaluation", "measure", measure, f"there are {', '.join(map(str, table.columns))}"
-        )
+        raise InputError("evaluation", "measure", measure, meant(measure, map(str, table.columns)))
     key = table["seed"].astype(str).where(table["seed"] >= 0, table["policy"])
     return {
         str(seed): [own[measure].to_numpy(float) for _, own in part.groupby("policy", sort=True)]

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.robot.ablation import states
 from hyperleg_design.robot.hyperleg import HyperLeg
 from hyperleg_design.robot.names import LAYOUTS, SIDES
@@ -131,7 +131,7 @@ class Swap:
 
     def __post_init__(self) -> None:
         if self.name not in SWAPS:
-            raise InputError("swap", "", self.name, f"expects one of {', '.join(SWAPS)}")
+            raise InputError("swap", "", self.name, meant(self.name, SWAPS))
 
     def __call__(self, design: RobotDesign) -> tuple[Alteration, ...]:
         """Alterations of one robot."""

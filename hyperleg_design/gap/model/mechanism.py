@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 
 if TYPE_CHECKING:
     import mujoco
@@ -139,9 +139,7 @@ class Mechanism:
             carried = np.flatnonzero(self.link_joint == self.joints.index(name))
             if len(carried):
                 return int(carried[0])
-        raise InputError(
-            "robot", "link", name, f"no such moving link; there are {', '.join(self.links)}"
-        )
+        raise InputError("robot", "link", name, f"no such moving link; {meant(name, self.links)}")
 
 
 def mechanism_of(model: mujoco.MjModel) -> Mechanism:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.gap.model.pads import pad_points
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def contacts(
                 log.name,
                 "contact_force",
                 name,
-                f"is no foot of this robot; there are {', '.join((*feet, *pad_names)) or 'none'}",
+                f"is no foot of this robot; {meant(name, [*feet, *pad_names])}",
             )
     if not feet:
         return Ground(None, None, None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.sizing.motions.hop import HopPlan, hop
 from hyperleg_design.sizing.motions.motion import Motion
 from hyperleg_design.sizing.motions.squat import SquatPlan, squat
@@ -44,15 +44,13 @@ def reference_motion(
         InfeasibleError: the legs cannot do it; says which joint or length stops them.
     """
     if name not in _PLANNERS:
-        raise InputError("motion", "", name, f"expects one of {', '.join(MOTIONS)}")
+        raise InputError("motion", "", name, meant(name, MOTIONS))
     if design.batch_shape:
         raise InputError(design.name, "", None, "holds a batch of designs; take one of them")
     planner, plan_type = _PLANNERS[name]
     known = plan_type.__dataclass_fields__  # type: ignore[attr-defined]
     for field, value in plan.items():
         if field not in known:
-            raise InputError(
-                name, field, value, f"is no part of the plan; it has {', '.join(known)}"
-            )
+            raise InputError(name, field, value, f"is no part of the plan; {meant(field, known)}")
     counted = {} if samples is None else {"samples": samples}
     return planner(design, plan_type(**plan), **counted)
