@@ -7,6 +7,9 @@ from __future__ import annotations
 import dataclasses
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError, shown
@@ -21,6 +24,9 @@ from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.motors import Motor, catalogue, load_motor
 from hyperleg_design.robot.trees.rod_range import RodRange, rod_ranges
 from hyperleg_design.robot.trees.tree_design import TreeDesign
+
+if TYPE_CHECKING:
+    from hyperleg_design.robot.described import RobotDesign
 
 KINDS = ("design", "motor", "urdf", "mjcf")
 XML = (".urdf", ".xml", ".mjcf")
@@ -141,6 +147,7 @@ def _check_design_file(path: str | Path) -> list[Finding]:
         dataclasses.replace(finding, place=re.sub(r" \(line \d+\)$", "", finding.place))
         for finding in check_urdf(urdf(design))  # lines of a text that the user does not see
     ]
+    findings += _narrow_ranges(design)
     if isinstance(design, TreeDesign):
         findings += [f for rod in rod_ranges(design) for f in _rod_findings(rod)]
     try:
@@ -149,6 +156,17 @@ def _check_design_file(path: str | Path) -> list[Finding]:
     except InputError as error:
         findings.append(finding_of(error, "warning"))
     return findings
+
+
+def _narrow_ranges(design: RobotDesign) -> list[Finding]:
+    """A warning where no joint moves by more degrees than a whole turn has radians."""
+    widths = {n: float(j.upper_deg - j.lower_deg) for n, j in design.joint_sections.items()}
+    if any(width > 2 * np.pi for width in widths.values()):
+        return []
+    widest = max(widths, key=lambda name: widths[name])
+    message = f"no range of motion is wider than {widths[widest]:g} deg, that of {widest}"
+    remedy = "lower_deg, upper_deg and default_deg are degrees; 1 rad is 57.3 deg"
+    return [Finding("warning", "joints", message, remedy)]
 
 
 def _rod_findings(rod: RodRange) -> list[Finding]:

@@ -2,7 +2,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+import yaml
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
@@ -73,6 +75,22 @@ def test_a_fault_is_one_finding(write, name, text, words):
 def test_a_design_whose_linkage_cannot_be_is_a_warning(write):
     path = write("a.yaml", "base: hyperleg\ntransmission: {walking: {ankle_pitch: 500}}")
     assert [(f.severity, "four-bar" in str(f)) for f in check_file(path)] == [("warning", True)]
+
+
+def test_ranges_typed_in_radians_are_a_warning(write):
+    text = resources.find("descriptions", "teaching_leg").read_text()
+    data = yaml.safe_load(text)
+    for joint in data["joints"].values():
+        for end in ("lower_deg", "upper_deg", "default_deg"):
+            if end in joint:
+                value = joint[end]["value"] if isinstance(joint[end], dict) else joint[end]
+                joint[end] = float(np.deg2rad(value))
+    (found,) = check_file(write("a.yaml", yaml.safe_dump(data)))
+    assert (found.severity, found.place) == ("warning", "joints")
+    assert "wider than" in found.message
+    assert "are degrees" in found.remedy
+    next(iter(data["joints"].values()))["upper_deg"] = 90  # one joint that moves is enough
+    assert check_file(write("a.yaml", yaml.safe_dump(data))) == []
 
 
 @pytest.mark.parametrize(
