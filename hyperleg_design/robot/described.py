@@ -164,10 +164,11 @@ class RobotDesign:
         try:
             return parameters.with_values(self, values, where, origins=origins)
         except InputError as error:
-            if error.where == where:
+            own = str(self.source or self.name)
+            if error.where != own:  # the replacement, or the file of a motor that it names
                 raise
             raise InputError(
-                f"{self.source or self.name} with {where}",
+                f"{own} with {where}",
                 error.field,
                 error.value,
                 error.remedy,

@@ -246,10 +246,7 @@ def _build(
         parts[key] = parameters.from_mapping(cls, data[key], where, key, origins)
     for path in parameters.rules(Design):
         origins.setdefault(path, Origin("assumed", "default of the field"))
-    try:
-        design = Design(name=name, origins=origins, source=where, variant=variant, **parts)
-    except InputError as error:
-        raise InputError(where, error.field, error.value, error.remedy) from None
+    design = Design(name=name, origins=origins, source=where, variant=variant, **parts)
     check_printed(design, where)
     stated = (design.toe.joint, design.actuators.toe_installed)
     if variant != "toe" and stated != states(variant):

@@ -251,10 +251,11 @@ def load_motor(path: Path) -> Motor:
     """
     data = read_yaml(path)
     where = short_name(path)
-    needed = ("name", "kind", "constants", "convention")
-    check_keys(data, where, "", needed, ("vendor", "product", "description", "presets"))
-    if data["name"] != path.stem:
-        raise InputError(where, "name", data["name"], f"must equal the file's name, {path.stem}")
+    optional = ("name", "vendor", "product", "description", "presets")
+    check_keys(data, where, "", ("kind", "constants", "convention"), optional)
+    if data.get("name", path.stem) != path.stem:
+        remedy = f"must equal the file's name, {path.stem}, or be left out"
+        raise InputError(where, "name", data["name"], remedy)
     convention = data["convention"]
     if not isinstance(convention, dict):
         raise InputError(
@@ -273,7 +274,7 @@ def load_motor(path: Path) -> Motor:
     for name, preset in declared.items():
         presets[str(name)] = _constants(preset, _PRESET, {}, where, f"presets.{name}")
     motor = Motor(
-        name=str(data["name"]),
+        name=path.stem,
         vendor=str(data.get("vendor", "")),
         product=str(data.get("product", "")),
         kind=str(data["kind"]),

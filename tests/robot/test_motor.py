@@ -65,6 +65,14 @@ def test_conventions_of_current_and_resistance(write):
     np.testing.assert_allclose(found, 40.0, rtol=1e-12)
 
 
+def test_a_motor_without_a_name_bears_its_files(write):
+    data = yaml.safe_load(resources.find("motors", "RI80").read_text())
+    named = load_motor(write("RI80.yaml", yaml.safe_dump(data)))
+    del data["name"]
+    assert load_motor(write("RI80.yaml", yaml.safe_dump(data))) == named
+    assert load_motor(write("Mine.yaml", yaml.safe_dump(data))).name == "Mine"
+
+
 CHANGES = {
     "convention missing": (lambda d: d.pop("convention"), ["convention", "missing"]),
     "kind": (lambda d: d.update(kind="stepper"), ["kind", "stepper", "inrunner"]),

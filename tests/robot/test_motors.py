@@ -134,6 +134,13 @@ def test_a_broken_catalogue_names_its_file(write, tmp_path, monkeypatch):
         catalogue()
 
 
+def test_a_design_with_a_broken_motor_names_the_motors_file(own_folder):
+    broken = own_folder / "Broken.yaml"
+    broken.write_text("kind: stepper\nconstants: {}\nconvention: {}\n")
+    with pytest.raises(InputError, match=r"^mine/Broken\.yaml: "):
+        load_design("hyperleg", overrides={"actuators.knee.motor": str(broken)})
+
+
 @pytest.fixture
 def own_folder(tmp_path, monkeypatch):
     """A folder with one motor of the user's: RI70 under another name, twice as strong."""
