@@ -147,8 +147,11 @@ class WalkProtocol(Protocol):
                 f"cannot be reached at {self.speed:g} m/s in time_limit; that takes {least:.1f} s",
             )
         if not self.steady.begin < self.steady_end <= self.distance:
-            remedy = f"expects begin below end, and end within distance, {self.distance:g} m"
-            raise InputError(self.name, "steady", [self.steady.begin, self.steady.end], remedy)
+            remedy = (
+                f"expects begin below end, and end within distance, {self.distance:g} m; "
+                f"set steady, such as {{begin: {self.distance / 5:g}}}"
+            )
+            raise InputError(self.name, "steady", [self.steady.begin, self.steady_end], remedy)
 
     @property
     def steady_end(self) -> float:
