@@ -47,6 +47,67 @@ class Recorder:
     rotor_noise: float = 0.02
     """Of the rotors' speeds [rad/s]."""
 
+    def rows(self, count: int, time: np.ndarray, rng: np.random.Generator) -> Rows:
+        """Draw when the rows of a log are read, and which of them are lost.
+
+        Args:
+            count: rows, were none lost.
+            time: evenly spaced times of a run `(k,)` [s].
+            rng: source of randomness.
+
+        Returns:
+            The rows.
+        """
+        ticks = np.arange(count) / self.rate
+        read = np.clip(ticks + np.abs(rng.normal(0, self.jitter, count)), 0, time[-1])
+        keep = rng.random(count) >= self.dropped
+        keep[[0, -1]] = True
+        written = read + rng.normal(0, self.clock, count)
+        keep[1:] &= np.diff(np.maximum.accumulate(written)) > 1e-5
+        place = read / (time[1] - time[0])
+        below = np.minimum(place.astype(int), time.size - 2)
+        return Rows(keep, written, below, (place - below)[:, None])
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """When the rows of a log are read, `t` of them."""
+
+    keep: np.ndarray
+    """Which are not lost `(t,)` of bool."""
+    written: np.ndarray
+    """Time that is written beside each `(t,)` [s]."""
+    below: np.ndarray
+    """Tick of the run before each `(t,)`."""
+    share: np.ndarray
+    """How far each is from that tick to the next one `(t, 1)` [-]."""
+
+    def at(self, values: np.ndarray) -> np.ndarray:
+        """Interpolate what happened to the moments at which rows are read.
+
+        Args:
+            values: at the ticks of the run `(k, columns)`.
+
+        Returns:
+            The values at the rows `(t, columns)`.
+        """
+        return values[self.below] * (1 - self.share) + values[self.below + 1] * self.share
+
+
+def gains_of(chain: Chain) -> dict[str, tuple[float, float]]:
+    """Gains of the joint controllers, as a log's metadata hold them.
+
+    Args:
+        chain: the robot.
+
+    Returns:
+        Stiffness [Nm/rad] and damping [Nms/rad] by joint.
+    """
+    return {
+        joint: (float(k), float(d))
+        for joint, k, d in zip(chain.joints, chain.stiffness, chain.damping, strict=True)
+    }
+
 
 def record(
     trace: Any,
@@ -72,18 +133,8 @@ def record(
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.logs.metadata import Metadata
 
-    ticks = np.arange(len(targets)) / recorder.rate
-    read = np.clip(ticks + np.abs(rng.normal(0, recorder.jitter, ticks.size)), 0, trace.time[-1])
-    keep = rng.random(ticks.size) >= recorder.dropped
-    keep[[0, -1]] = True
-    written = read + rng.normal(0, recorder.clock, ticks.size)
-    keep[1:] &= np.diff(np.maximum.accumulate(written)) > 1e-5
-    place = read / (trace.time[1] - trace.time[0])
-    below = np.minimum(place.astype(int), trace.time.size - 2)
-    share = (place - below)[:, None]
-
-    def at(values: np.ndarray) -> np.ndarray:
-        return values[below] * (1 - share) + values[below + 1] * share
+    rows = recorder.rows(len(targets), trace.time, rng)
+    keep, at = rows.keep, rows.at
 
     def noisy(values: np.ndarray, level: Any) -> np.ndarray:
         return values + rng.standard_normal(values.shape) * level
@@ -108,7 +159,7 @@ def record(
     elif recorder.torque == "motor_torque":
         put("motor_torque", chain.motors, drive)
     if recorder.torque in ("motor_torque", "motor_torque_command"):
-        put("motor_torque_command", chain.motors, trace.command[below])
+        put("motor_torque_command", chain.motors, trace.command[rows.below])
     if recorder.drives:
         put("motor_temperature", chain.motors, np.round(at(trace.temperature)))
         signals["battery_voltage"] = np.round(
@@ -116,15 +167,9 @@ def record(
         )
     if recorder.rotors:
         put("motor_velocity", chain.motors, noisy(at(trace.motor_velocity), recorder.rotor_noise))
-    known: dict[str, Any] = {
-        "base": "fixed",
-        "gains": {
-            j: (float(k), float(d))
-            for j, k, d in zip(chain.joints, chain.stiffness, chain.damping, strict=True)
-        },
-    }
+    known: dict[str, Any] = {"base": "fixed", "gains": gains_of(chain)}
     if recorder.torque == "motor_current":
         known["torque_constant"] = dict(
             zip(chain.motors, chain.torque_constant.tolist(), strict=True)
         )
-    return Log(name, written[keep], signals, Metadata(**{**known, **metadata}))
+    return Log(name, rows.written[keep], signals, Metadata(**{**known, **metadata}))

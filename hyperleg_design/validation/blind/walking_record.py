@@ -7,12 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.validation.blind.plants.walking import (
-    WalkingPlant,
-    WalkingTrace,
-    pad_names,
-)
-from hyperleg_design.validation.blind.recorder import Recorder
+from hyperleg_design.validation.blind.plants.walking import WalkingPlant, WalkingTrace, pad_names
+from hyperleg_design.validation.blind.recorder import Recorder, gains_of
 from hyperleg_design.validation.blind.robots.chain import Chain
 
 if TYPE_CHECKING:
@@ -52,19 +48,12 @@ def walking_log(
     from hyperleg_design.gap.logs.log import Log
     from hyperleg_design.gap.logs.metadata import Metadata
 
-    ticks = np.arange(len(trace.targets)) / recorder.rate
-    read = np.clip(ticks + np.abs(rng.normal(0, recorder.jitter, ticks.size)), 0, trace.time[-1])
-    keep = rng.random(ticks.size) >= recorder.dropped
-    keep[[0, -1]] = True
-    written = read + rng.normal(0, recorder.clock, ticks.size)
-    keep[1:] &= np.diff(np.maximum.accumulate(written)) > 1e-5
-    place = read / (trace.time[1] - trace.time[0])
-    below = np.minimum(place.astype(int), trace.time.size - 2)
+    rows = recorder.rows(len(trace.targets), trace.time, rng)
+    keep = rows.keep
     signals: dict[str, np.ndarray] = {}
 
     def put(kind: str, names: Sequence[str], values: np.ndarray, noise: Any) -> None:
-        share = (place - below)[:, None]
-        at = values[below] * (1 - share) + values[below + 1] * share
+        at = rows.at(values)
         at = at + rng.standard_normal(at.shape) * noise
         signals.update({f"{kind}/{n}": at[keep, k] for k, n in enumerate(names)})
 
@@ -88,9 +77,6 @@ def walking_log(
     known: dict[str, Any] = {
         "robot": robot.robot,
         "base": "floating",
-        "gains": {
-            j: (float(k), float(d))
-            for j, k, d in zip(robot.joints, robot.stiffness, robot.damping, strict=True)
-        },
+        "gains": gains_of(robot),
     }
-    return Log(name, written[keep], signals, Metadata(**{**known, **metadata}))
+    return Log(name, rows.written[keep], signals, Metadata(**{**known, **metadata}))

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.validation.blind.plants.walking import (
-    pad_names,
-)
+from hyperleg_design.validation.blind.plants.walking import pad_names
 from hyperleg_design.validation.blind.residual import CUTOFF, EDGE, SLOW, SOFT, multiple
 from hyperleg_design.validation.blind.robots.chain import Chain
 from hyperleg_design.validation.blind.walking_record import ESTIMATE
@@ -110,7 +108,6 @@ def walking_residual(log: Log, robot: Chain) -> np.ndarray:
     )
     quaternion = smooth(even("base_orientation", "wxyz"))
     measured = even("motor_torque", robot.motors)
-    command = even("motor_torque_command", robot.motors)
     loads = smooth(even("contact_force", [f"{p}_{a}" for p, *_ in pads for a in "xyz"])).reshape(
         len(time), len(pads), 3
     )
@@ -157,7 +154,6 @@ def walking_residual(log: Log, robot: Chain) -> np.ndarray:
         smooth(-needed[:, :6]),
         np.where(slow, np.nan, smooth(joints)),
         smooth(measured - asked),
-        smooth(command - asked)[:, :0],
     ]
     cut = round(EDGE / step)
     return np.concatenate(rows, -1)[cut:-cut]
