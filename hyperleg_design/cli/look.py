@@ -22,7 +22,8 @@ class View(Printing):
     designs: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
     """One or two shipped names or YAML files; what was recorded, else hyperleg, by default."""
     variant: str = ""
-    """Ablation to make of all designs: toe, toe_locked, toe_removed_matched or toe_removed."""
+    """Ablation to make of all designs: toe, toe_locked, toe_removed_matched, toe_removed or
+    toe_passive."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """PATH=VALUE, applied to all designs."""
     recording: Path | None = None

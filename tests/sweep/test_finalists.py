@@ -137,7 +137,7 @@ def test_fine_tuned_policies_decide(walked, tmp_path, monkeypatch):
         assert finalist.after["walk.power"] == alone.values("power")[stood].mean()
     best = min(final.finalists, key=lambda f: f.after["walk.power"])
     assert final.winners[0] == best.number
-    assert "by the values of fine-tuned" in final_text(search, final)
+    assert "by the values after fine-tuning" in final_text(search, final)
 
 
 def test_from_the_command_line(tmp_path, capsys):

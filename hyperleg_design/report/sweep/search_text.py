@@ -71,11 +71,9 @@ def final_text(search: Search, final: Final) -> str:
     winner = final.winner()
     if winner is None:
         return "\n".join([*lines, "no winner: no finalist holds all constraints in its new trials"])
-    measured = "fine-tuned" if final.steps else "new trials"
-    if not search.plan.protocols:
-        lines.append(f"winner: design {winner.number}")
-    else:
-        lines.append(f"winner: design {winner.number}, by the values of {measured}")
+    measured = "after fine-tuning" if final.steps else "of new trials"
+    values = f", by the values {measured}" if search.plan.protocols else ""
+    lines.append(f"winner: design {winner.number}{values}")
     if len(final.winners) > 1:
         others = ", ".join(str(number) for number in final.winners[1:])
         lines.append(

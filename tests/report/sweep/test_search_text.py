@@ -80,7 +80,7 @@ def test_fine_tuned_values_replace_those_of_new_trials(search):
     tuned = Finalist(1, row(0.30), row(0.50), row(0.40, 0.39, 0.41))
     other = Finalist(2, row(0.30), row(0.40), row(0.41, 0.405, 0.42))
     text = search_text.final_text(search, Final((tuned, other), (1, 2), 400_000))
-    assert "by the values of fine-tuned" in text
+    assert "by the values after fine-tuning" in text
     assert "not beaten in all objectives: 2" in text
     assert "overlaps that of design 2" in text
     assert "--finetune" not in text
