@@ -22,8 +22,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
 from hyperleg_design.robot import gear, transmission
+from hyperleg_design.robot.laws import Laws
 from hyperleg_design.robot.names import JOINTS
 from hyperleg_design.robot.trees import tree_limb
 from hyperleg_design.robot.trees.tree_design import TreeDesign
@@ -36,24 +36,9 @@ FRICTION_SPEED = 0.1
 """Width v_m of the Coulomb friction's tanh [rad/s] (assumed; the paper does not print it)."""
 
 Law = Callable[["HyperLeg | TreeDesign"], tuple[np.ndarray, np.ndarray]]
-_LAWS: dict[str, Law] = {}
-
-
-def friction_law(name: str) -> Callable[[Law], Law]:
-    """Register a law of friction under the name that `friction.law` uses.
-
-    Args:
-        name: of the law.
-
-    Returns:
-        A decorator for the function that computes Coulomb and viscous friction.
-    """
-
-    def register(law: Law) -> Law:
-        _LAWS[name] = law
-        return law
-
-    return register
+_LAWS: Laws[Law] = Laws("friction")
+friction_law = _LAWS.register
+"""Registers a law of friction under the name that `friction.law` uses."""
 
 
 def joint_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
@@ -71,14 +56,7 @@ def joint_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
         InputError: no such law.
     """
     design = cast("HyperLeg | TreeDesign", design)
-    if design.friction.law not in _LAWS:
-        raise InputError(
-            design.source or design.name,
-            "friction.law",
-            design.friction.law,
-            f"expects one of {', '.join(sorted(_LAWS))}",
-        )
-    coulomb, viscous = _LAWS[design.friction.law](design)
+    coulomb, viscous = _LAWS.of(design)(design)
     if not isinstance(design, TreeDesign) and design.toe.joint == "passive":
         place = np.arange(len(JOINTS)) == JOINTS.index("toe")
         viscous = viscous + np.expand_dims(design.toe.damping, -1) * place

@@ -30,8 +30,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
 from hyperleg_design.robot import motors, transmission
+from hyperleg_design.robot.laws import Laws
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 
@@ -64,24 +64,9 @@ class GearChange:
 
 
 Law = Callable[["HyperLeg | TreeDesign"], GearChange]
-_LAWS: dict[str, Law] = {}
-
-
-def gear_law(name: str) -> Callable[[Law], Law]:
-    """Register a law of gears under the name that `gears.law` uses.
-
-    Args:
-        name: of the law.
-
-    Returns:
-        A decorator for the function that computes the changes.
-    """
-
-    def register(law: Law) -> Law:
-        _LAWS[name] = law
-        return law
-
-    return register
+_LAWS: Laws[Law] = Laws("gears")
+gear_law = _LAWS.register
+"""Registers a law of gears under the name that `gears.law` uses."""
 
 
 def gear_change(design: HyperLeg | TreeDesign) -> GearChange:
@@ -96,14 +81,7 @@ def gear_change(design: HyperLeg | TreeDesign) -> GearChange:
     Raises:
         InputError: no such law.
     """
-    if design.gears.law not in _LAWS:
-        raise InputError(
-            design.source or design.name,
-            "gears.law",
-            design.gears.law,
-            f"expects one of {', '.join(sorted(_LAWS))}",
-        )
-    return _LAWS[design.gears.law](design)
+    return _LAWS.of(design)(design)
 
 
 @gear_law("declared")

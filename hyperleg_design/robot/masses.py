@@ -17,6 +17,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import gear
+from hyperleg_design.robot.laws import Laws
 from hyperleg_design.robot.mass.actuator import actuator_mass
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SEGMENTS
 
@@ -72,24 +73,9 @@ class MassTable:
 
 
 Law = Callable[["HyperLeg"], MassTable]
-_LAWS: dict[str, Law] = {}
-
-
-def mass_law(name: str) -> Callable[[Law], Law]:
-    """Register a law of masses under the name that `masses.law` uses.
-
-    Args:
-        name: of the law.
-
-    Returns:
-        A decorator for the function that computes the mass table.
-    """
-
-    def register(law: Law) -> Law:
-        _LAWS[name] = law
-        return law
-
-    return register
+_LAWS: Laws[Law] = Laws("masses")
+mass_law = _LAWS.register
+"""Registers a law of masses under the name that `masses.law` uses."""
 
 
 def mass_table(design: HyperLeg) -> MassTable:
@@ -105,14 +91,7 @@ def mass_table(design: HyperLeg) -> MassTable:
     Raises:
         InputError: no such law.
     """
-    if design.masses.law not in _LAWS:
-        raise InputError(
-            design.source or design.name,
-            "masses.law",
-            design.masses.law,
-            f"expects one of {', '.join(sorted(_LAWS))}",
-        )
-    return _LAWS[design.masses.law](design)
+    return _LAWS.of(design)(design)
 
 
 def built_mass(design: Any, actuator: Any) -> Any:

@@ -122,7 +122,7 @@ def test_a_design_without_the_sections_keeps_its_declared_friction() -> None:
 
 
 def test_another_law_is_one_function(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(friction, "_LAWS", dict(friction._LAWS))
+    monkeypatch.setattr(friction._LAWS, "by_name", dict(friction._LAWS.by_name))
 
     @friction.friction_law("none")
     def none(_: Design) -> tuple[np.ndarray, np.ndarray]:

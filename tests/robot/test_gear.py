@@ -150,7 +150,7 @@ def test_the_toes_motor_leaves_its_stages_behind() -> None:
 
 
 def test_another_law_is_one_function(design: Design, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(gear, "_LAWS", dict(gear._LAWS))
+    monkeypatch.setattr(gear._LAWS, "by_name", dict(gear._LAWS.by_name))
 
     @gear.gear_law("feather")
     def feather(_: Design) -> gear.GearChange:

@@ -119,7 +119,7 @@ def halving():
         return dataclasses.replace(table, pelvis=table.pelvis / 2)
 
     yield law
-    del masses._LAWS["halving"]
+    del masses._LAWS.by_name["halving"]
 
 
 @pytest.mark.usefixtures("halving")

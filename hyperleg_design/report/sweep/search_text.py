@@ -72,8 +72,8 @@ def final_text(search: Search, final: Final) -> str:
     if winner is None:
         return "\n".join([*lines, "no winner: no finalist holds all constraints in its new trials"])
     measured = "after fine-tuning" if final.steps else "of new trials"
-    values = f", by the values {measured}" if search.plan.protocols else ""
-    lines.append(f"winner: design {winner.number}{values}")
+    said = f", by the values {measured}" if search.plan.protocols else ""
+    lines.append(f"winner: design {winner.number}{said}")
     if len(final.winners) > 1:
         others = ", ".join(str(number) for number in final.winners[1:])
         lines.append(
