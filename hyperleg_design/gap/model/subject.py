@@ -14,7 +14,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError, meant
 from hyperleg_design.gap.logs.metadata import STANDARD_GRAVITY, Metadata
-from hyperleg_design.gap.model import robot_file
+from hyperleg_design.gap.model.body_inertia import add_mass
 from hyperleg_design.gap.model.mechanism import Mechanism, mechanism_of, pinocchio_model
 
 if TYPE_CHECKING:
@@ -203,7 +203,7 @@ def _declared(bare: Subject, metadata: Metadata) -> Subject:
         model = copy.copy(bare.model)
         for place, numbers in metadata.payload.items():
             link = bare.tree.link(place)
-            robot_file.add_mass(model, bare.tree.links[link], numbers[0], np.array(numbers[1:]))
+            add_mass(model, bare.tree.links[link], numbers[0], np.array(numbers[1:]))
         if moved:
             model.opt.gravity[:] = metadata.gravity
             values["gravity"] = np.array(metadata.gravity)

@@ -17,16 +17,6 @@ def test_a_root_that_hangs_on_a_joint_cannot_float():
         robot_file.set_base(spec, "floating", Path("two.xml"))
 
 
-def test_added_mass_moves_the_centre():
-    model = mujoco.MjModel.from_xml_string(TWO % "")
-    before = model.body_mass[2], model.body_ipos[2].copy()
-    robot_file.add_mass(model, "b", 2.0, np.array([0.0, 0.3, 0.0]))
-    assert model.body_mass[2] == before[0] + 2.0
-    np.testing.assert_allclose(
-        model.body_ipos[2], (before[0] * before[1] + [0, 0.6, 0]) / (before[0] + 2.0)
-    )
-
-
 def test_corners_and_ends_touch_first():
     text = """<mujoco><worldbody><body><geom type="box" size="0.1 0.2 0.3" pos="1 0 0"/><geom type="capsule" size="0.05" fromto="0 0 0 0 0 0.4"/>
       <geom size="0.07" pos="0 0 2"/></body></worldbody></mujoco>"""  # noqa: E501

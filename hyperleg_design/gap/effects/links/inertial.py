@@ -14,12 +14,8 @@ from typing_extensions import override
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
-from hyperleg_design.gap.model.mechanism import (
-    BASE,
-    inertial_parameters,
-    mass_properties,
-    quaternion_rotation,
-)
+from hyperleg_design.gap.model.body_inertia import add_inertia
+from hyperleg_design.gap.model.mechanism import BASE
 from hyperleg_design.gap.signals import regressor
 from hyperleg_design.simulation.alteration import Alteration
 
@@ -122,31 +118,9 @@ class AddedInertia(Alteration):
             model: the compiled model, which is changed.
             simulation: index of the simulation, of values that have one row each.
         """
-        import mujoco
-
         added = self.added if self.added.ndim == 1 else self.added[simulation]
-        if not added.any():
-            return
-        index = model.body(self.body).id
-        turned = quaternion_rotation(model.body_iquat[index])
-        own = inertial_parameters(
-            float(model.body_mass[index]),
-            model.body_ipos[index],
-            turned @ np.diag(model.body_inertia[index]) @ turned.T,
-        )
-        mass, com, inertia = mass_properties(own + added)
-        values, vectors = np.linalg.eigh(inertia)
-        if np.linalg.det(vectors) < 0:
-            vectors[:, 0] *= -1
-        quaternion = np.zeros(4)
-        mujoco.mju_mat2Quat(quaternion, vectors.ravel())
-        (
-            model.body_mass[index],
-            model.body_ipos[index],
-            model.body_inertia[index],
-            model.body_iquat[index],
-        ) = mass, com, values, quaternion
-        model.body_simple[index] = 0
+        if added.any():
+            add_inertia(model, self.body, added)
 
 
 def fitted(signals: Signals, link: str, part: slice) -> np.ndarray | None:
