@@ -1,12 +1,11 @@
-"""The one place of the benchmark that knows where the diagnosis and its readers live.
+"""Reading logs for the benchmark, and diagnosing its cases.
 
 A diagnosis runs in a process of its own (`worker.py`), on files, so that another checkout can be
-scored by the same runner; rooms of `gap/` that are moved are found by the first module that exists.
+scored by the same runner.
 """
 
 from __future__ import annotations
 
-import importlib
 import json
 import os
 import subprocess
@@ -18,13 +17,9 @@ from typing import Any
 import hyperleg_design
 from hyperleg_design.errors import InputError
 from hyperleg_design.validation.benchmark.case import Recording
+from hyperleg_design.validation.spread import ONE_THREAD
 
-READERS = ("hyperleg_design.gap.readers", "hyperleg_design.gap.logs.readers")
-"""Modules that may hold `open_log`."""
-BLIND = ("hyperleg_design.validation.blind", "hyperleg_design.gap.blind")
-"""Packages that may hold the blind plants."""
 WORKER = Path(__file__).with_name("worker.py")
-ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 LONGEST = 900.0
 """Time after which a diagnosis is given up [s]."""
 FAILED = "error"
@@ -67,43 +62,12 @@ def open_recordings(path: Path, metadata: Mapping[str, Any] | None = None) -> tu
     Raises:
         InputError: unreadable.
     """
-    logs = _first(READERS, "open_log")(path, metadata=metadata)
+    from hyperleg_design.gap.logs.readers import open_log
+
     return tuple(
-        Recording(log.name, log.time, dict(log.signals), log.metadata.mapping()) for log in logs
+        Recording(log.name, log.time, dict(log.signals), log.metadata.mapping())
+        for log in open_log(path, metadata=metadata)
     )
-
-
-def blind_module(name: str) -> Any:
-    """A module of the blind plants, such as `plan`.
-
-    Args:
-        name: of the module.
-
-    Returns:
-        The module.
-
-    Raises:
-        InputError: no package holds it.
-    """
-    for package in BLIND:
-        try:
-            return importlib.import_module(f"{package}.{name}")
-        except ModuleNotFoundError as error:
-            if error.name is None or not f"{package}.{name}".startswith(error.name):
-                raise
-    raise InputError("benchmark", name, None, f"is in none of {', '.join(BLIND)}")
-
-
-def _first(modules: tuple[str, ...], name: str) -> Any:
-    for module in modules:
-        try:
-            return getattr(importlib.import_module(module), name)
-        except ModuleNotFoundError as error:
-            if error.name is None or not module.startswith(error.name):
-                raise
-        except AttributeError:
-            continue
-    raise InputError("benchmark", name, None, f"is in none of {', '.join(modules)}")
 
 
 def diagnose_folder(

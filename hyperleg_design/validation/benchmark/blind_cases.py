@@ -8,7 +8,6 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from hyperleg_design.validation.benchmark.adapter import blind_module
 from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
 
 SEED, COUNT = 20261201, 24
@@ -21,7 +20,9 @@ VISIBLE = 2.0
 
 @cache
 def _plans() -> tuple[Any, ...]:
-    return tuple(blind_module("plan").plan_cases(COUNT, SEED))
+    from hyperleg_design.validation.blind.plan import plan_cases
+
+    return tuple(plan_cases(COUNT, SEED))
 
 
 def blind_cases() -> list[Case]:
@@ -47,12 +48,13 @@ def material(data: Path, index: int) -> tuple[Material, Truth]:
         data: of the real logs; none are used.
         index: of the case in the trial.
     """
+    from hyperleg_design.validation.blind.case import describe
+    from hyperleg_design.validation.blind.rig_case import rig_case
+    from hyperleg_design.validation.blind.walking_case import walking_case
+
     plan = _plans()[index]
-    if plan.plant == "walking":
-        case = blind_module("walking_case").walking_case(plan)
-    else:
-        case = blind_module("rig_case").rig_case(plan)
-    told = blind_module("rig_case").describe(case)
+    case = walking_case(plan) if plan.plant == "walking" else rig_case(plan)
+    told = describe(case)
     faults = tuple(
         Fault(
             wrong["effect"],

@@ -11,10 +11,8 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +29,7 @@ from hyperleg_design.validation.benchmark.case import (
 )
 from hyperleg_design.validation.benchmark.measures import case_table, table
 from hyperleg_design.validation.benchmark.scoring import VERSION, score
+from hyperleg_design.validation.spread import spread
 from hyperleg_design.writing import MARKER, check_output_folder, write_json, write_text
 
 KEPT = ("schema", "verdict", "gap", "causes", "rivals", "equivalent", "remainder", "message")
@@ -159,25 +158,8 @@ def _run(arguments: Sequence[tuple[Any, ...]], workers: int, total: int, progres
     with tqdm(
         total=total, initial=total - len(arguments), desc="cases", disable=not progress, unit=""
     ) as bar:
-        for _ in _spread(run_case, arguments, workers):
+        for _ in spread(run_case, arguments, workers):
             bar.update()
-
-
-def _spread(
-    job: Callable[..., Any], arguments: Sequence[tuple[Any, ...]], workers: int
-) -> Iterable[Any]:
-    if workers == 1 or len(arguments) < 2:
-        for one in arguments:
-            yield job(*one)
-        return
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        waiting = [pool.submit(job, *one) for one in arguments]
-        try:
-            for done in as_completed(waiting):
-                yield done.result()
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
 
 
 def run_case(name: str, folder: str, data: str, checkout: str) -> None:

@@ -21,21 +21,19 @@ import subprocess
 import sys
 import time
 import zipfile
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 from hyperleg_design.errors import HyperlegError, InputError, OutputError
 from hyperleg_design.validation.blind.plan import PLANTS, Plan, plan_cases
+from hyperleg_design.validation.spread import ONE_THREAD, spread
 from hyperleg_design.writing import check_output_folder, write_bytes, write_json
 
 SEAL, KEY, CASES, DIAGNOSES, MAKING = "seal.json", "key.zip", "cases", "diagnoses", ".making"
 FAILED = "error"
 """Verdict of a diagnosis that raised an error; counts as a miss."""
-ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 @dataclass(frozen=True)
@@ -201,7 +199,7 @@ def make_here(
     plans = plan_cases(cases, seed, plants=plants, duration=duration)
     waiting = [p for p in plans if not (making / CASES / _name(p)).is_dir()]
     with _bar(cases, cases - len(waiting), "cases", progress) as bar:
-        for _ in _spread(_make_one, [(p, str(making)) for p in waiting], workers):
+        for _ in spread(_make_one, [(p, str(making)) for p in waiting], workers):
             bar.update()
     key = sealed(
         [json.loads((making / "truth" / f"{_name(p)}.json").read_text()) for p in plans], asked
@@ -294,7 +292,7 @@ def diagnose_trial(
     names = [f"{i:03d}" for i in range(seal.cases)]
     waiting = [n for n in names if not (folder / DIAGNOSES / n / "seconds.json").is_file()]
     with _bar(len(names), len(names) - len(waiting), "diagnoses", progress) as bar:
-        for _ in _spread(
+        for _ in spread(
             _diagnose_one,
             [
                 (str(folder / CASES / n), str(folder / DIAGNOSES / n), seed, diagnose)
@@ -352,28 +350,6 @@ def as_mapping(diagnosis: Any) -> dict[str, Any]:
         return diagnosis
     content: dict[str, Any] = diagnosis.mapping()
     return content
-
-
-def _spread(
-    job: Callable[..., Any], arguments: list[tuple[Any, ...]], workers: int
-) -> Iterable[Any]:
-    """Results as they come, of processes that start afresh; in this process where there is one
-    worker.
-    """
-    if workers <= 1 or len(arguments) < 2:
-        for one in arguments:
-            yield job(*one)
-        return
-    for name, value in ONE_THREAD.items():
-        os.environ.setdefault(name, value)
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        waiting = [pool.submit(job, *one) for one in arguments]
-        try:
-            for done in as_completed(waiting):
-                yield done.result()
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
 
 
 @contextlib.contextmanager

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.validation.benchmark.adapter import blind_module, diagnose_folder
+from hyperleg_design.validation.benchmark.adapter import diagnose_folder
 from hyperleg_design.validation.benchmark.case import Material, Recording, write_case
 
 
@@ -62,9 +62,3 @@ def test_our_own_diagnosis_refuses_a_case_without_torques_in_words(case):
 def test_a_folder_without_the_package_is_refused(case, tmp_path):
     with pytest.raises(InputError, match="holds no hyperleg_design"):
         diagnose_folder(case, tmp_path)
-
-
-def test_the_blind_plants_are_found_wherever_they_stand():
-    assert callable(blind_module("plan").plan_cases)
-    with pytest.raises(InputError, match="nowhere_at_all"):
-        blind_module("nowhere_at_all")

@@ -9,6 +9,8 @@ import pytest
 
 from hyperleg_design.validation.benchmark import blind_cases
 from hyperleg_design.validation.benchmark.case import KINDS
+from hyperleg_design.validation.blind import case as blind_case
+from hyperleg_design.validation.blind import rig_case
 
 
 @pytest.fixture(scope="module")
@@ -47,13 +49,9 @@ def test_a_case_tells_its_truth_and_gives_its_files(monkeypatch):
     }
     wrongs = [wrong | {"multiple": 2.5}, wrong | {"multiple": 1.5}]
 
-    def module(name):
-        if name == "plan":
-            return SimpleNamespace(plan_cases=lambda count, seed: [SimpleNamespace(plant="rig")])
-        return SimpleNamespace(rig_case=lambda plan: case, describe=lambda case: {"wrongs": wrongs})
-
-    monkeypatch.setattr(blind_cases, "blind_module", module)
-    monkeypatch.setattr(blind_cases, "_plans", lambda: module("plan").plan_cases(1, 0))
+    monkeypatch.setattr(blind_cases, "_plans", lambda: [SimpleNamespace(plant="rig")])
+    monkeypatch.setattr(rig_case, "rig_case", lambda plan: case)
+    monkeypatch.setattr(blind_case, "describe", lambda case: {"wrongs": wrongs})
     material, truth = blind_cases.material(None, 0)
     assert material.robot == "<mujoco/>"
     assert (len(material.logs), len(material.references)) == (2, 1)

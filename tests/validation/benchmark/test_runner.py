@@ -164,10 +164,3 @@ def test_all_cases_of_this_version_have_names_of_their_own_and_a_third_of_the_re
     assert sum(case.kind == "nothing" for case in real) >= len(real) / 3
     for suite in ("real", "newcomers", "blind"):
         assert {case.split for case in cases if case.suite == suite} == set(SPLITS)
-
-
-def test_processes_side_by_side_give_what_one_gives():
-    arguments = [(2, k) for k in range(4)]
-    one = list(runner._spread(pow, arguments, 1))
-    assert one == [1, 2, 4, 8]
-    assert sorted(runner._spread(pow, arguments, 2)) == one
