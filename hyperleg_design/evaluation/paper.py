@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-PAPER = "arXiv 2606.19699"
-
 LEG_LENGTH = 0.786
 """Hip-pitch axis to ground [m] (Section II.A)."""
 HEIGHT = 0.9586

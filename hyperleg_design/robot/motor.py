@@ -212,15 +212,6 @@ class Motor:
         """
         return self.power_constant(constants) * self.rated_torque**2
 
-    def peak_duty(self) -> float:
-        """Compute the fraction of the time that the peak torque may last on average, (rated /
-        peak)^2.
-
-        Returns:
-            The fraction [-].
-        """
-        return min(1.0, (self.rated_torque / self._value("peak_torque")) ** 2)
-
     def peak_power(self, constants: str = "paper") -> float:
         """Compute the largest mechanical power inside the envelope.
 

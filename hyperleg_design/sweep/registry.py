@@ -38,11 +38,6 @@ class Entry:
     protocol: str = ""
     """Protocol of the trials that it is measured in; empty for a measure of the design alone."""
 
-    @property
-    def of_trial(self) -> str:
-        """Name of the measure in a single trial, as `hyperleg evaluate` prints it."""
-        return self.name.split(".", 1)[1] if self.protocol else self.name
-
 
 @cache
 def entries() -> dict[str, Entry]:

@@ -82,7 +82,6 @@ def test_every_motor_makes_sense(motor):
         power = speeds * np.minimum(peak, stall * (1 - speeds / free))
         assert motor.peak_power(constants) == pytest.approx(power.max(), rel=1e-4)
         assert motor.rated_heat(constants) == pytest.approx(cp * motor.rated_torque**2, rel=1e-12)
-    assert 0 < motor.peak_duty() <= 1
     assert 0.05 < motor.mass < 3
     for name, constant in motor.constants.items():
         assert constant.source, name

@@ -15,7 +15,7 @@ def test_all_that_sweeps_compute_and_evaluate_measures_is_there_under_the_same_n
         for name in table:
             entry = registry.resolve(f"{protocol}.{name}", [protocol])
             assert entry is registry.resolve(name, [protocol]) or name in known
-            assert entry.of_trial == name
+            assert entry.name == f"{protocol}.{name}"
     for entry in known.values():
         assert entry.doc
         assert entry.better in ("low", "high", "")

@@ -321,7 +321,9 @@ def _inertial_gram(subject: Subject, position: np.ndarray, step: float) -> np.nd
         )
         if link is not None:
             columns.append(
-                inertial_regressor.regressor(subject, position, velocity, acceleration, None, link)
+                inertial_regressor.regressors(
+                    subject, position, velocity, acceleration, None, link
+                )[0]
             )
     matrix = (np.concatenate(columns, -1) / joint_strength(subject)[None, :, None]).reshape(
         -1, 10 * len(columns)

@@ -19,30 +19,6 @@ if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject
 
 
-def regressor(
-    subject: Subject,
-    position: np.ndarray,
-    velocity: np.ndarray,
-    acceleration: np.ndarray,
-    base: BaseMotion | None,
-    link: str,
-) -> np.ndarray:
-    """Compute the joint torques over the ten inertial parameters of one link.
-
-    Args:
-        subject: the robot.
-        position: [rad], `(t, n)`.
-        velocity: [rad/s], `(t, n)`.
-        acceleration: [rad/s^2], `(t, n)`.
-        base: motion of a floating base; None for a fixed one.
-        link: name of the link.
-
-    Returns:
-        The regressor, `(t, n, 10)`; see `signals.regressor.link_regressor`.
-    """
-    return regressors(subject, position, velocity, acceleration, base, link)[0]
-
-
 def regressors(
     subject: Subject,
     position: np.ndarray,

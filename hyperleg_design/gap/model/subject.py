@@ -130,6 +130,17 @@ class Subject:
         """Whether the base floats."""
         return self.base == "floating"
 
+    def motor_over_joint(self, motor: int) -> float:
+        """Angle of a motor over that of the joint that it moves most [-].
+
+        Args:
+            motor: index of the motor.
+
+        Returns:
+            The ratio [-].
+        """
+        return float(np.abs(self.joint_from_motor[:, motor]).max())
+
     @cached_property
     def one_to_one(self) -> bool:
         """Whether each motor drives the joint of its own name and counts at it."""

@@ -8,7 +8,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap.model.inertial_regressor import regressor, regressors
+from hyperleg_design.gap.model.inertial_regressor import regressors
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.signals.signals import Signals
@@ -39,14 +39,7 @@ def link_regressor(signals: Signals, link: str) -> np.ndarray:
     with _LOCK:
         found = _REGRESSORS.setdefault(signals, {}).get(link)
     if found is None:
-        found = regressor(
-            signals.subject,
-            signals.position,
-            signals.velocity,
-            signals.acceleration,
-            signals.base,
-            link,
-        )
+        found = _regressors(signals, link)[0]
         found.setflags(write=False)
         with _LOCK:
             _forget(KEPT - found.nbytes)
@@ -73,11 +66,9 @@ def base_regressor(signals: Signals, link: str) -> np.ndarray:
         The regressor, `(t, 6, 10)`; its columns are those of `link_regressor`.
     """
     assert signals.base is not None
-    return regressors(
-        signals.subject,
-        signals.position,
-        signals.velocity,
-        signals.acceleration,
-        signals.base,
-        link,
-    )[1]
+    return _regressors(signals, link)[1]
+
+
+def _regressors(signals: Signals, link: str) -> tuple[np.ndarray, np.ndarray]:
+    motion = signals.position, signals.velocity, signals.acceleration, signals.base
+    return regressors(signals.subject, *motion, link)

@@ -178,6 +178,31 @@ def highest_pelvis(
     return allowed
 
 
+def lifted(
+    design: Design,
+    place: np.ndarray,
+    feet: tuple[FootPath, FootPath],
+    rise: np.ndarray,
+    min_knee: float,
+    roll: np.ndarray | float = 0.0,
+) -> np.ndarray:
+    """Lift the path of a pelvis to the largest height that `highest_pelvis` allows.
+
+    Args:
+        design: a robot.
+        place: of the pelvis, `(n, 2)` [m].
+        feet: planned feet.
+        rise: of the pelvis, with two derivatives by time, `(3, n)` [m, m/s, m/s^2].
+        min_knee: [rad]
+        roll: of the pelvis, `(n,)` [rad].
+
+    Returns:
+        Height of the pelvis with its derivatives, `(3, n)` [m, m/s, m/s^2].
+    """
+    height = highest_pelvis(design, place, feet, rise[0], min_knee, roll)
+    return rise + np.array([[height], [0.0], [0.0]])
+
+
 def balanced_states(
     model: RigidBodyModel,
     feet: tuple[FootPath, FootPath],

@@ -11,7 +11,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.robot.tree import SIGN
-from hyperleg_design.sizing.motions.balance import Series, balanced_states, highest_pelvis
+from hyperleg_design.sizing.motions.balance import Series, balanced_states, lifted
 from hyperleg_design.sizing.motions.foot_path import FLAT, FootPath
 from hyperleg_design.sizing.motions.motion import Motion, check_positive, contact_mask
 
@@ -100,12 +100,7 @@ def squat(design: Design, plan: SquatPlan | None = None, samples: int = 81) -> M
     )
 
     def height(place: np.ndarray, _rise: np.ndarray) -> np.ndarray:
-        return (
-            wave
-            + np.array([highest_pelvis(design, place, feet, wave[0], plan.min_knee), 0.0, 0.0])[
-                :, None
-            ]
-        )
+        return lifted(design, place, feet, wave, plan.min_knee)
 
     states = balanced_states(
         model, feet, pressure, height, Series(plan.period / samples, mirrored=False)

@@ -13,7 +13,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import SIDES
-from hyperleg_design.sizing.motions.balance import Series, balanced_states, highest_pelvis
+from hyperleg_design.sizing.motions.balance import Series, balanced_states, lifted
 from hyperleg_design.sizing.motions.foot_path import Step, foot_path, quintic
 from hyperleg_design.sizing.motions.motion import Motion, check_positive, contact_mask
 from hyperleg_design.sizing.motions.squat import sole_middle
@@ -149,12 +149,7 @@ def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> 
     climb[:, rising] = quintic(time[rising], landed, over, (0, 0, 0), (high, 0, 0))
 
     def height(place: np.ndarray, _rise: np.ndarray) -> np.ndarray:
-        return (
-            climb
-            + np.array(
-                [highest_pelvis(design, place, feet, climb[0], plan.min_knee, lean[0]), 0.0, 0.0]
-            )[:, None]
-        )
+        return lifted(design, place, feet, climb, plan.min_knee, lean[0])
 
     states = balanced_states(
         model, feet, pressure, height, Series(end / (samples - 1), mirrored=True), roll=lean

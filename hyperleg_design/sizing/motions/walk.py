@@ -12,7 +12,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.tree import SIGN
-from hyperleg_design.sizing.motions.balance import Series, balanced_states, highest_pelvis
+from hyperleg_design.sizing.motions.balance import Series, balanced_states, lifted
 from hyperleg_design.sizing.motions.foot_path import FootPath, Step, foot_path, quintic
 from hyperleg_design.sizing.motions.motion import Motion, check_positive, contact_mask
 
@@ -114,12 +114,7 @@ def walk(design: Design, plan: WalkPlan | None = None, samples: int = 101) -> Mo
     )
 
     def height(place: np.ndarray, rise: np.ndarray) -> np.ndarray:
-        return (
-            rise
-            + np.array([highest_pelvis(design, place, feet, rise[0], plan.min_knee), 0.0, 0.0])[
-                :, None
-            ]
-        )
+        return lifted(design, place, feet, rise, plan.min_knee)
 
     states = balanced_states(
         model, feet, pressure, height, Series(stride_time / samples, mirrored=False), drift, load

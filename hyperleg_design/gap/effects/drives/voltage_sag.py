@@ -154,7 +154,7 @@ class VoltageSag(Effect):
             else:
                 given = limited(signals, motor, wanted)
                 near = np.maximum(limits, 1e-12) / motor_strength(subject, motor)
-                drop = motor_velocity(signals, motor) / (speed * ratio(subject, motor))
+                drop = motor_velocity(signals, motor) / (speed * subject.motor_over_joint(motor))
                 full = 1 - lost
                 given = np.maximum(np.minimum(given, (full - drop) / near), -(full + drop) / near)
             changes[motor] = given - limited(signals, motor, asked)
@@ -166,7 +166,7 @@ class VoltageSag(Effect):
         strength = np.array(
             [motor_strength(subject, motor) for motor in range(len(subject.motors))]
         )
-        ratios = np.array([ratio(subject, motor) for motor in range(len(subject.motors))])
+        ratios = np.array([subject.motor_over_joint(motor) for motor in range(len(subject.motors))])
         return WeakBattery(
             values[..., 0],
             values[..., 1],
@@ -222,7 +222,7 @@ def _lines(signals: Signals) -> list[list[float]]:
             lines, np.abs(torque[far]) / motor_strength(subject, motor)
         )
         if level > 0 and slope > 0:
-            found.append([1 / level, 0.0, level / (slope * ratio(subject, motor))])
+            found.append([1 / level, 0.0, level / (slope * subject.motor_over_joint(motor))])
     return found
 
 
@@ -247,19 +247,6 @@ def missing(signals: Signals) -> np.ndarray:
     return modelled(
         np.nan_to_num(signals.believed), speed, machine(subject), reference_power(subject)
     )
-
-
-def ratio(subject: Subject, motor: int) -> float:
-    """Speed of a motor over that of the joint that it moves most [-].
-
-    Args:
-        subject: the robot.
-        motor: index of the motor.
-
-    Returns:
-        The ratio [-].
-    """
-    return float(np.abs(subject.joint_from_motor[:, motor]).max())
 
 
 def reference_power(subject: Subject) -> float:

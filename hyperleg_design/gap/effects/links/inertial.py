@@ -103,6 +103,19 @@ class InertialEffect(Effect):
         return AddedInertia(tree.links[link], added if values.ndim > 1 else added[0])
 
 
+class OwnInertiaEffect(InertialEffect):
+    """An error of what a link has itself."""
+
+    @override
+    def locations(self, subject: Subject) -> tuple[str, ...]:
+        """Moving links that have a mass."""
+        return tuple(
+            name
+            for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True)
+            if own[0] > 0
+        )
+
+
 @dataclass(frozen=True, eq=False)
 class AddedInertia(Alteration):
     """Inertial parameters added to a body of the model."""

@@ -9,7 +9,7 @@ import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.families import INERTIAL
-from hyperleg_design.gap.effects.links.inertial import InertialEffect, fitted
+from hyperleg_design.gap.effects.links.inertial import OwnInertiaEffect, fitted
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.model.mechanism import inertial_parameters, mass_properties
 
@@ -22,7 +22,7 @@ OF_ARM, SHORTEST = 0.03, 0.03
 metres."""
 
 
-class LinkCom(InertialEffect):
+class LinkCom(OwnInertiaEffect):
     """A link's mass moved as a whole in the link's frame; inertia about the centre of mass
     stays.
     """
@@ -57,15 +57,6 @@ class LinkCom(InertialEffect):
             arm = max(float(np.linalg.norm(own[1:4] / own[0])), SHORTEST)
             spreads[link] = np.full(3, OF_ARM * arm)
         return spreads
-
-    @override
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Moving links that have a mass."""
-        return tuple(
-            name
-            for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True)
-            if own[0] > 0
-        )
 
     @override
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.links.inertial import InertialEffect, least_mass
+from hyperleg_design.gap.effects.links.inertial import OwnInertiaEffect, least_mass
 from hyperleg_design.gap.effects.parameter import Parameter
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ DRAWN = 0.03
 """Usual error of a link that is drawn as it is built, over its mass."""
 
 
-class LinkMass(InertialEffect):
+class LinkMass(OwnInertiaEffect):
     """An error of a link's own mass, spread as the link's mass is: centre of mass stays, inertia
     grows alike.
     """
@@ -56,15 +56,6 @@ class LinkMass(InertialEffect):
             link: np.array([DRAWN * tree.link_inertial[tree.link(link), 0]])
             for link in self.locations(subject)
         }
-
-    @override
-    def locations(self, subject: Subject) -> tuple[str, ...]:
-        """Moving links that have a mass."""
-        return tuple(
-            name
-            for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True)
-            if own[0] > 0
-        )
 
     @override
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -70,7 +70,7 @@ class Backlash(MotorEffect):
         motor = signals.subject.motors.index(location)
         angle, side, coasting, behind = np.atleast_2d(np.asarray(values, float)).T
         moved = slack.slack(
-            signals, motor, angle * belt.moved_most(signals.subject, motor), side, coasting, behind
+            signals, motor, angle * signals.subject.motor_over_joint(motor), side, coasting, behind
         )
         return belt.trace(signals, motor, moved, side, behind=behind)
 
@@ -91,7 +91,7 @@ class Backlash(MotorEffect):
         values = np.asarray(values, float)
         return Belt(
             location,
-            play=values[..., 0] * belt.moved_most(subject, motor),
+            play=values[..., 0] * subject.motor_over_joint(motor),
             damping=float(damping),
             side=values[..., 1],
         )

@@ -45,7 +45,6 @@ from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.transmission import turned
 
 if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
     from hyperleg_design.gap.signals.signals import Signals
 
 BAND = 0.2
@@ -191,7 +190,7 @@ def stretch(
     late = 2 * damping_ratio * np.sqrt(rotor(signals.subject, motor) * compliance)
     moved = np.asarray(compliance[:, None] * lagged(through, late, signals.step))
     if stiffening is not None and stiffening.any():
-        bend = stiffening / moved_most(signals.subject, motor)
+        bend = stiffening / signals.subject.motor_over_joint(motor)
         stiff = bend > 0
         moved[stiff] = _eased(moved[stiff], bend[stiff, None])
     return moved
@@ -203,19 +202,6 @@ def _eased(straight: np.ndarray, bend: np.ndarray) -> np.ndarray:
     """
     size = 2 / np.sqrt(3)
     return np.asarray(size / bend * np.sinh(np.arcsinh(3 / size * bend * straight) / 3))
-
-
-def moved_most(subject: Subject, motor: int) -> float:
-    """Angle of a motor over that of the joint that it moves most [-].
-
-    Args:
-        subject: the robot.
-        motor: index of the motor.
-
-    Returns:
-        The ratio [-].
-    """
-    return float(np.abs(subject.joint_from_motor[:, motor]).max())
 
 
 def trace(

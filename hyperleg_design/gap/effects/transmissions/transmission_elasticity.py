@@ -138,7 +138,7 @@ class TransmissionElasticity(MotorEffect):
         compliance, ratio = values[..., 0], values[..., 1]
         inertia = machine.rotor(subject, subject.motors.index(location))
         damping = 2 * ratio * np.sqrt(inertia / np.where(compliance > 0, compliance, np.inf))
-        bend = values[..., 4] / belt.moved_most(subject, subject.motors.index(location))
+        bend = values[..., 4] / subject.motor_over_joint(subject.motors.index(location))
         return Belt(
             location, compliance=compliance, damping=damping, side=values[..., 2], stiffening=bend
         )

@@ -4,7 +4,6 @@ itself on another day.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,18 +39,6 @@ class Nuisance:
     """From controller to drive [s]."""
     air: float
     """Temperature at which the motors start [degC]."""
-
-    def at_link(self, links: Sequence[str], name: str) -> int:
-        """Place of a link in the arrays.
-
-        Args:
-            links: names of all links.
-            name: of the link.
-
-        Returns:
-            The index.
-        """
-        return list(links).index(name)
 
 
 def perfect(chain: Chain) -> Nuisance:

@@ -89,14 +89,6 @@ class Chain:
             self.joint_from_motor - np.diag(np.diag(self.joint_from_motor))
         )
 
-    def depth_mass(self) -> np.ndarray:
-        """Mass that each joint carries `(n,)` [kg]."""
-        carried = np.array([link.mass for link in self.links])
-        for index in range(len(self.links) - 1, -1, -1):
-            if self.links[index].parent >= 0:
-                carried[self.links[index].parent] += carried[index]
-        return carried
-
     def with_link(self, name: str, **values: Any) -> Chain:
         """Copy with other values of one link.
 

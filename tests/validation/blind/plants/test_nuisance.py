@@ -67,4 +67,3 @@ def test_the_built_robot_has_the_mass_that_is_drawn(arm):
     off = nuisance.of_robot(arm, np.random.default_rng(4))
     total = sum(link.mass for link in nuisance.built(arm, off).links)
     assert total == pytest.approx(off.mass @ [link.mass for link in arm.links])
-    assert off.at_link([link.name for link in arm.links], arm.links[2].name) == 2
