@@ -58,7 +58,7 @@ def test_a_tutorial_runs_as_it_stands(page, tmp_path, monkeypatch, capsys):
         if title:
             Path(title).write_text(body)
         elif language == "bash":
-            for line in body.splitlines():
+            for line in body.replace("\\\n", " ").splitlines():
                 run(line, monkeypatch)
         elif language == "python":
             exec(body, names)
