@@ -99,7 +99,7 @@ def parse_yaml(text: str) -> Any:
 
 
 class _Loader(_BASE):  # type: ignore[misc]
-    """Safe YAML that refuses a key twice."""
+    """Safe YAML that refuses a key twice, and numbers in base 60."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> Any:
         if isinstance(node, yaml.MappingNode):
@@ -117,6 +117,9 @@ class _Loader(_BASE):  # type: ignore[misc]
         return super().construct_mapping(node, deep)
 
     def construct_object(self, node: Any, deep: bool = False) -> Any:
+        if node.tag.endswith((":int", ":float")) and ":" in node.value:
+            problem = f"{node.value!r:.60} is no number; write ratios such as 1:6 as one number"
+            raise yaml.constructor.ConstructorError(None, None, problem, node.start_mark)
         try:
             return super().construct_object(node, deep)
         except (ValueError, OverflowError, AttributeError, KeyError, TypeError) as error:

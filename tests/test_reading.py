@@ -26,6 +26,8 @@ def test_a_mapping_is_read(write):
         ("a: 1\nb: !!python/object:os.system x\n", 2, "not YAML"),
         ("a: 2020-13-45\n", 1, "month"),
         ("a: 1\nb: !!int x\n", 2, "no value"),
+        ("a: 1\nb: 1:6\n", 2, "'1:6' is no number"),  # YAML's own rules make it 66
+        ("a: [1, 2:30.5]\n", 1, "'2:30.5' is no number"),
         ("a: &x [1]\nb: *y\n", 2, "alias"),
         ("a: " + "1" * 5000, 1, "digits"),
         ("[" * 100_000, 1, str(MAX_DEPTH)),

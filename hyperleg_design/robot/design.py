@@ -223,7 +223,9 @@ def parse_overrides(overrides: Mapping[str, Any] | Iterable[str]) -> dict[str, A
         try:
             parsed[path.strip()] = parse_yaml(raw)
         except yaml.YAMLError:
-            raise InputError("--set", path, raw, "is not a value; quote it, or see YAML") from None
+            raise InputError(
+                "--set", path, raw, "is no value in YAML; quote it, or write a ratio as one number"
+            ) from None
     return parsed
 
 

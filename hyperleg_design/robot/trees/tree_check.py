@@ -223,6 +223,12 @@ def _check_bodies(design: TreeDesign, where: str) -> None:
         mass = sum((np.asarray(masses[link].mass) for link in own), start=np.zeros(()))
         remedy = f"moves with the joint {name} and has no mass; give it some, or fix the joint"
         _refuse(where, f"links.{joint.child}.mass", mass > 0, mass, remedy)
+        if len(own) == 1:  # a fixed child beside it is at another place
+            inertia = masses[joint.child].inertia
+            remedy = "expects the radii of gyration of a link that moves, unless inertia is given"
+            gyration = design.link_sections[joint.child].gyration
+            extended = np.any(inertia > 0, axis=(-2, -1))
+            _refuse(where, f"links.{joint.child}.gyration", extended, gyration, remedy)
 
 
 def _check_actuation(design: TreeDesign, where: str) -> None:

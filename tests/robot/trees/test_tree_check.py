@@ -41,6 +41,11 @@ def with_part(section, **parts):
             id="unknown link",
         ),
         pytest.param(
+            with_part("links", shank={"mass": 0.5}),
+            ["links.shank.gyration", "radii of gyration"],
+            id="mass without extent",
+        ),
+        pytest.param(
             {"actuators": {"hip": leg_file()["actuators"]["hip"]}},
             ["joints.knee", "no motor"],
             id="joint without a motor",
