@@ -134,6 +134,9 @@ def family_of(path: Path) -> str:
     seen: list[Path] = []
     while True:
         data = read_yaml(path)
+        if "axes" in data:
+            remedy = "belongs to a sweep, not to a design; hyperleg sweep run takes this file"
+            raise InputError(short_name(path), "axes", None, remedy)
         family = data.get("family")
         if family is not None and family not in FAMILIES:
             remedy = f"expects one of {', '.join(FAMILIES)}"

@@ -51,3 +51,10 @@ def test_designs_travel_to_other_processes_and_back_from_mappings():
 def test_what_needs_hyperleg_refuses_another_family_and_says_so():
     with pytest.raises(InputError, match=r"mini_cheetah\.yaml.*family.*another family.*load_robot"):
         load_design("mini_cheetah")
+
+
+def test_a_sweep_is_no_design(tmp_path):
+    path = tmp_path / "sweep.yaml"
+    path.write_text("design: hyperleg\naxes: {toe.mass: {values: [0.1, 0.2]}}\n")
+    with pytest.raises(InputError, match=r"sweep\.yaml: axes: belongs to a sweep"):
+        load_robot(path)

@@ -4,9 +4,12 @@ robot, and conditioned.
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.checks.check import Check, check_log
@@ -76,7 +79,7 @@ def open_logs(
         The logs to be tested, and the references.
 
     Raises:
-        InputError: no log to test, or one that cannot be opened.
+        InputError: no log to test, one that cannot be opened, or the same one twice.
     """
     if not sources:
         raise InputError("gap", "logs", None, "expects files or folders of logs")
@@ -84,6 +87,10 @@ def open_logs(
         (log, log.metadata.role == REFERENCE) for source in sources for log in open_log(source)
     ]
     opened += [(log, True) for source in references for log in open_log(source)]
+    for (first, _), (second, _) in itertools.combinations(opened, 2):
+        if _same(first, second):
+            remedy = f"holds the same as {first.name}; each recording counts once"
+            raise InputError("gap", "logs", second.name, remedy)
     tests = [log for log, reference in opened if not reference]
     healthy = [log for log, reference in opened if reference]
     if not tests:
@@ -91,6 +98,18 @@ def open_logs(
             "gap", "logs", len(healthy), "are all references: name at least one log to be diagnosed"
         )
     return tests, healthy
+
+
+def _same(first: Log, second: Log) -> bool:
+    """Whether two logs are one recording."""
+    return (
+        np.array_equal(first.time, second.time)
+        and first.signals.keys() == second.signals.keys()
+        and all(
+            np.array_equal(values, second.signals[column], equal_nan=True)
+            for column, values in first.signals.items()
+        )
+    )
 
 
 def _checked(log: Log, subject: Subject) -> Check:

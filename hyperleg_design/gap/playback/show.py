@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design import resources
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.gap.effects import EFFECTS, effect
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
@@ -192,9 +192,8 @@ def _values(one: Effect, location: str, subject: Subject, settings: Sequence[str
     for setting in settings:
         name, sign, text = setting.partition("=")
         if not sign or name not in known:
-            raise InputError(
-                "set", name, None, f"expects PARAMETER=VALUE, with one of {', '.join(known)}"
-            )
+            remedy = f"expects PARAMETER=VALUE; {meant(name, known)}"
+            raise InputError("set", setting, None, remedy)
         try:
             values[known[name]] = float(text)
         except ValueError:

@@ -7,7 +7,7 @@ import pytest
 from robots import PENDULUM, servo_run, waves
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.checks.intake import take_in
+from hyperleg_design.gap.checks.intake import open_logs, take_in
 from hyperleg_design.gap.logs.log import write_log
 from hyperleg_design.gap.playback.measure import measure
 from hyperleg_design.report.gap.text import gap_text
@@ -39,6 +39,16 @@ def test_logs_that_say_so_are_references(folder: Path) -> None:
     text = gap_text(gap)
     assert "swing" in text
     assert "reference logs" in text
+
+
+def test_a_recording_counts_once(folder: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "copy.parquet"
+    copy.write_bytes((folder / "heavy.parquet").read_bytes())
+    heavy, clean = folder / "heavy.parquet", folder / "clean.parquet"
+    for sources, references in (([heavy, copy], []), ([heavy], [copy]), ([heavy], [clean, clean])):
+        with pytest.raises(InputError, match="each recording counts once"):
+            open_logs(sources, references)
+    assert len(open_logs([heavy], [clean])[1]) == 1
 
 
 def test_nothing_to_test_is_told(folder: Path) -> None:

@@ -70,7 +70,8 @@ def test_settings_and_places_are_taken_and_checked(robot_files):
     )
     for wrong, message in (
         ("damping", "PARAMETER=VALUE"),
-        ("mass=1", "with one of damping"),
+        ("mass=1", "there are damping"),
+        ("dampng=1", r"did you mean damping\?"),
         ("damping=x", "expects a number"),
         ("damping=-1e9", r"\.\."),
     ):
