@@ -155,6 +155,7 @@ def _named_class(name: str, parts: tuple[tuple[str, type], ...]) -> type:
     return dataclasses.make_dataclass(name, parts, frozen=True, eq=False, kw_only=True)
 
 
+@cache
 def ratios_class(joints: tuple[str, ...]) -> type:
     """Make a dataclass with a reduction for each joint that a motor drives.
 
@@ -164,11 +165,6 @@ def ratios_class(joints: tuple[str, ...]) -> type:
     Returns:
         The dataclass; the same one for the same joints.
     """
-    return _ratios_class(joints)
-
-
-@cache
-def _ratios_class(joints: tuple[str, ...]) -> type:
     from hyperleg_design.robot.trees.tree_sections import Checked
 
     leaves = [(joint, Any, number("", -1000, 1000)) for joint in joints]
