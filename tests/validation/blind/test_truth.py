@@ -20,14 +20,7 @@ from hyperleg_design.validation.blind.wrong import (
     WALKING_ONLY,
     Wrong,
 )
-
-SHAPES = {
-    "stribeck_friction": {"speed": 0.2},
-    "controller_gain": {"stiffness": 1.0, "damping": 0.5},
-    "cogging": {"order": 7.0, "phase": 0.3},
-    "joint_spring": {"rest": 0.1},
-    "link_com": {"x": 1.0, "y": 0.0, "z": 0.0},
-}
+from tests.validation.blind.shapes import SHAPES
 
 
 @pytest.fixture(scope="module")

@@ -12,19 +12,8 @@ from hyperleg_design.validation.blind.plants.nuisance import of_robot, perfect
 from hyperleg_design.validation.blind.plants.rig_build import Reach, build_rig, tilted
 from hyperleg_design.validation.blind.robots.catalogue import chain
 from hyperleg_design.validation.blind.wrong import CATALOGUE, ODDITIES, WALKING_ONLY, Wrong
+from tests.validation.blind.shapes import SHAPES
 
-SHAPES = {
-    "stribeck_friction": {"speed": 0.2},
-    "controller_gain": {"stiffness": 1.0, "damping": 0.5},
-    "cogging": {"order": 7.0, "phase": 0.3},
-    "joint_spring": {"rest": 0.1},
-    "friction_patch": {"shift": 0.2},
-    "periodic_push": {"frequency": 2.0},
-    "cross_coupling": {"other": 0.0},
-    "tilted_gravity": {"heading": 0.4},
-    "payload": {"x": 0.0, "y": 0.0, "z": 0.1},
-    "link_com": {"x": 1.0, "y": 0.0, "z": 0.0},
-}
 PLACES = {"voltage_sag": "battery", "command_delay": "robot", "packet_loss": "robot"}
 CHANGED = {
     "coulomb_friction": {"coulomb", "static"},
