@@ -16,7 +16,7 @@ import numpy as np
 import yaml
 
 from hyperleg_design import resources
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, meant
 from hyperleg_design.reading import parse_yaml, read_yaml, short_name
 from hyperleg_design.robot.ablation import ablate, states
 from hyperleg_design.robot.checks.consistency import check_design
@@ -171,6 +171,30 @@ def design_from_mapping(data: Mapping[str, Any], where: str) -> Design:
     return _build(rest, str(data.get("name", where)), where, {}, variant)
 
 
+def base_file(path: Path, name: Any) -> Path:
+    """Find the file of the design that another one is based on.
+
+    Args:
+        path: of the file that names its base.
+        name: of the base.
+
+    Returns:
+        `NAME.yaml` beside that file, else the shipped design.
+
+    Raises:
+        InputError: there is neither.
+    """
+    beside = path.with_name(f"{name}.yaml")
+    if beside.is_file():
+        return beside
+    shipped = resources.names("descriptions")
+    if name not in shipped:
+        known = [*shipped, *(f.stem for f in sorted(path.parent.glob("*.yaml")) if f != path)]
+        remedy = f"no such design; {meant(str(name), known)}"
+        raise InputError(short_name(path), "base", name, remedy)
+    return resources.find("descriptions", name)
+
+
 def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
     """Design of a file before ablation, and the variant that the file asks for."""
     data = with_motor_paths(read_yaml(path), path.parent)
@@ -191,11 +215,7 @@ def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
     if "base" not in data:
         origins: dict[str, Origin] = {}
         return _build(rest, name, where, origins, variant or "toe"), None
-    beside = path.with_name(f"{data['base']}.yaml")
-    base, base_variant = _read(
-        beside if beside.is_file() else resources.find("descriptions", str(data["base"])),
-        (*seen, path.resolve()),
-    )
+    base, base_variant = _read(base_file(path, data["base"]), (*seen, path.resolve()))
     return dataclasses.replace(
         _overlaid(base, rest, where), name=name, source=where
     ), variant or base_variant

@@ -14,6 +14,7 @@ from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.design import (
     Design,
+    base_file,
     changed,
     design_from_mapping,
     leaf_values,
@@ -144,12 +145,7 @@ def family_of(path: Path) -> str:
         if family or not isinstance(data.get("base"), str) or path.resolve() in seen:
             return family or FAMILIES[0]
         seen.append(path.resolve())
-        path = _base(path, data["base"])
-
-
-def _base(path: Path, name: str) -> Path:
-    beside = path.with_name(f"{name}.yaml")
-    return beside if beside.is_file() else resources.find("descriptions", name)
+        path = base_file(path, data["base"])
 
 
 def _read(path: Path, seen: tuple[Path, ...] = ()) -> TreeDesign:
@@ -159,7 +155,7 @@ def _read(path: Path, seen: tuple[Path, ...] = ()) -> TreeDesign:
     name = str(data.get("name", re.sub(r"[^A-Za-z0-9_.-]+", "_", path.stem)))
     if "base" not in data:
         return tree_design_from_mapping(data, name, where)
-    base = _read(_base(path, str(data["base"])), (*seen, path.resolve()))
+    base = _read(base_file(path, data["base"]), (*seen, path.resolve()))
     rest = {k: v for k, v in data.items() if k not in ("base", "family", "name", "description")}
     design = _overlaid(base, rest, where)
     bases = (base.name, *base.bases)

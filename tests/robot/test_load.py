@@ -58,3 +58,16 @@ def test_a_sweep_is_no_design(tmp_path):
     path.write_text("design: hyperleg\naxes: {toe.mass: {values: [0.1, 0.2]}}\n")
     with pytest.raises(InputError, match=r"sweep\.yaml: axes: belongs to a sweep"):
         load_robot(path)
+
+
+@pytest.mark.parametrize("family", ["", "family: tree\n"])
+def test_a_base_that_is_nowhere_names_its_file_and_the_nearest(tmp_path, family):
+    (tmp_path / "my_dog.yaml").write_text("base: mini_cheetah\n")
+    path = tmp_path / "mine.yaml"
+    for base, near in (("my_dgo", "my_dog"), ("mini_cheeta", "mini_cheetah")):
+        path.write_text(f"{family}base: {base}\n")
+        with pytest.raises(InputError, match=rf"mine\.yaml: base = .*did you mean {near}\?"):
+            load_robot(path)
+    path.write_text(f"{family}base: 3\n")
+    with pytest.raises(InputError, match=r"mine\.yaml: base"):
+        load_robot(path)
