@@ -108,7 +108,7 @@ class Video(Printing):
     seed: Annotated[int | None, AtLeast(0)] = None
     """Of the policy's starting state; the protocol's by default."""
     begin: Annotated[float, AtLeast(0)] = 0.0
-    """First time shown [s]."""
+    """First time shown [s], or as much earlier as the walk is too short for begin and duration."""
     duration: Annotated[float, AtLeast(0, exclusive=True)] = 10.0
     """Shown of a walk [s]; a T-test is shown whole."""
     size: tuple[int, int] = (800, 640)

@@ -156,7 +156,7 @@ def _run(arguments: Sequence[tuple[Any, ...]], workers: int, total: int, progres
     from tqdm import tqdm
 
     with tqdm(
-        total=total, initial=total - len(arguments), desc="cases", disable=not progress, unit=""
+        total=total, initial=total - len(arguments), desc="cases", disable=not progress, unit="case"
     ) as bar:
         for _ in spread(run_case, arguments, workers):
             bar.update()

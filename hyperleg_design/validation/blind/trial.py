@@ -356,5 +356,5 @@ def as_mapping(diagnosis: Any) -> dict[str, Any]:
 def _bar(total: int, done: int, what: str, show: bool) -> Any:
     from tqdm import tqdm
 
-    with tqdm(total=total, initial=done, desc=what, disable=not show, unit="") as bar:
+    with tqdm(total=total, initial=done, desc=what, disable=not show, unit="case") as bar:
         yield bar
