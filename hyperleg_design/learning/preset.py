@@ -170,7 +170,8 @@ class Preset(Checked):
                 self.name,
                 "tasks",
                 task,
-                f"has no stages for this task; it has {', '.join(self.tasks)}",
+                f"has no stages for this task; it has {', '.join(self.tasks)}; a task made from "
+                "one of these keeps its name",
             )
         return self.tasks[task]
 
