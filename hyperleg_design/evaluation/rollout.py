@@ -21,6 +21,7 @@ from hyperleg_design.evaluation.policy import (
 from hyperleg_design.evaluation.signal_blocks import SignalBlocks
 from hyperleg_design.simulation.drives.told import TOLD
 from hyperleg_design.simulation.layout import GRAVITY
+from hyperleg_design.simulation.stepping.record import signals_of
 from hyperleg_design.simulation.terms import terminations
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.layout import Layout
+    from hyperleg_design.simulation.stepping.chunk import Chunk
     from hyperleg_design.simulation.stepping.step import Divergence
     from hyperleg_design.simulation.tasks import Task
 
@@ -175,11 +177,7 @@ def record(
         InputError: a policy for another layout, or whose output has a wrong shape or is not finite.
     """
     check_layout(policy, environment)
-    count, substeps, duration = (
-        environment.simulations,
-        int(environment.task.physics.substeps),
-        environment.task.physics.policy_step,
-    )
+    count, duration = environment.simulations, environment.task.physics.policy_step
     limit = round(time_limit / duration)
     environment.assist = None
     environment.recording, environment.rewarded = True, False
@@ -192,8 +190,8 @@ def record(
     length, ended_at = np.zeros(count, int), np.zeros(count)
     outcomes = [TIMED_OUT] * count
     divergences: dict[int, Divergence] = {}
-    first, blocks = np.empty(0), SignalBlocks({}, substeps)
-    step_index = 0
+    blocks = SignalBlocks()
+    first = np.concatenate([chunk.motion.position for chunk in environment.chunks])
     for step_index in range(limit):
         action = checked_action(
             policy, observation, step_index, duration, running, environment.action_size
@@ -202,63 +200,64 @@ def record(
             before_step(environment)
         step = environment.step(action)
         observation = step.observations["policy"]
-        if not step_index:
-            begin = environment.signals()
-            first = begin["base_position"][:, 0].copy()
-            names = (*SIGNALS, *(name for name in begin if name.startswith(TOLD)))
-            blocks = SignalBlocks({name: begin[name].shape[2:] for name in names}, substeps)
-        now = slice(step_index * substeps, (step_index + 1) * substeps)
-        blocks.keep(environment, running)
+        blocks.keep([chunk.samples for chunk in environment.chunks], running)
         divergences.update({d.simulation: d for d in step.divergences if running[d.simulation]})
         ended = step.ended[running[step.ended]]
         for trial in ended:
             outcomes[trial] = _OF_ENDING[int(step.ending[trial])]
-            length[trial], ended_at[trial] = now.start, (step_index + 1) * duration
+            length[trial], ended_at[trial] = step_index, (step_index + 1) * duration
         over = [ended]
         running[ended] = False
         if arrived is not None:
-            rows, place = blocks.latest("base_position")
-            done = rows[running[rows] & arrived(first[rows], place)]
+            rows, state = blocks.latest("state")
+            done = rows[running[rows] & arrived(first[rows], state[:, :3])]
             for trial in done:
                 outcomes[trial] = ARRIVED
-            length[done], ended_at[done] = now.stop, (step_index + 1) * duration
+            length[done] = step_index + 1
+            ended_at[done] = (step_index + 1) * duration
             running[done] = False
             over.append(done)
         if not running.any():
             break
         if freezing and any(map(len, over)):
             environment.freeze(np.concatenate(over))
-    length[running], ended_at[running] = limit * substeps, limit * duration
-    signals = {name: blocks.taken(name, length) for name in blocks.names}
-    return [
-        Trial(
-            design=environment.designs[environment.design_index[i]],
-            layout=environment.layouts[environment.design_index[i]],
-            model=environment.models[environment.design_index[i]],
-            time_step=environment.task.physics.time_step,
-            substeps=substeps,
-            outcome=outcomes[i],
-            end_time=float(ended_at[i]),
-            divergence=divergences.get(i),
-            power_constant=_power_constant(environment, i),
-            told={name: values[i] for name, values in signals.items() if name.startswith(TOLD)},
-            **{name: signals[name][i] for name in SIGNALS},
-        )
-        for i in range(count)
-    ]
-
-
-def _power_constant(environment: Environment, simulation: int) -> np.ndarray | None:
-    """Power constants of one simulation's motors where alterations changed them, `(K,)`."""
+    length[running], ended_at[running] = limit, limit * duration
+    samples = {name: blocks.taken(name, length) for name in blocks.names}
+    trials = []
     for chunk in environment.chunks:
-        chain, row = chunk.drive.chain, simulation - chunk.first
-        if chain is None or not 0 <= row < chunk.count:
-            continue
-        altered, nominal = chain.machine.power_constant, chain.nominal.power_constant
-        if altered is nominal:
-            return None
-        return np.array(np.broadcast_to(altered, (chunk.count, altered.shape[-1]))[row])
-    return None
+        matrix = chunk.drive.model.joint_from_motor
+        for row in range(chunk.count):
+            i = chunk.first + row
+            own = environment.design_index[i]
+            signals = signals_of(
+                {name: each.pop(0) for name, each in samples.items()},
+                environment.layouts[own],
+                matrix if matrix.ndim == 2 else matrix[row],
+            )
+            trial = Trial(
+                design=environment.designs[own],
+                layout=environment.layouts[own],
+                model=environment.models[own],
+                time_step=environment.task.physics.time_step,
+                substeps=int(environment.task.physics.substeps),
+                outcome=outcomes[i],
+                end_time=float(ended_at[i]),
+                divergence=divergences.get(i),
+                power_constant=_power_constant(chunk, row),
+                told={name: values for name, values in signals.items() if name.startswith(TOLD)},
+                **{name: signals[name] for name in SIGNALS},
+            )
+            trials.append(trial)
+    return trials
+
+
+def _power_constant(chunk: Chunk, row: int) -> np.ndarray | None:
+    """Power constants of one simulation's motors where alterations changed them, `(K,)`."""
+    chain = chunk.drive.chain
+    if chain is None or chain.machine.power_constant is chain.nominal.power_constant:
+        return None
+    altered = chain.machine.power_constant
+    return np.array(np.broadcast_to(altered, (chunk.count, altered.shape[-1]))[row])
 
 
 def resolved(

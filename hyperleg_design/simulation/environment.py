@@ -14,7 +14,6 @@ from __future__ import annotations
 import dataclasses
 import os
 import threading
-from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
@@ -307,7 +306,8 @@ class Environment:
     def rewarded(self) -> bool:
         """Whether steps give rewards and the observations of all groups, as they do by default.
 
-        Otherwise they give the observations of the policy alone, and rewards are zero.
+        Otherwise they give the observations of the policy alone, rewards are zero, and the motors'
+        thermal averages stay as they are.
         """
         return self.chunks[0].rewarded
 
@@ -340,27 +340,6 @@ class Environment:
             True with alterations, or where the task draws, see `Task.draws_later`.
         """
         return self.task.draws_later(duration) or bool(self.alterations)
-
-    def keep_signals(
-        self, store: Mapping[str, np.ndarray], samples: slice, simulations: np.ndarray
-    ) -> None:
-        """Write `signals` of some simulations into arrays, without `joint_friction`.
-
-        Args:
-            store: arrays by the names of the signals that are wanted, `(t, k, ...)`.
-            samples: where the last policy step belongs in time.
-            simulations: whose signals are written, ascending, `(k,)`.
-        """
-        for chunk in self.chunks:
-            begin, end = np.searchsorted(simulations, (chunk.first, chunk.first + chunk.count))
-            if begin == end:
-                continue
-            signals = chunk.signals(friction=False)
-            for name, values in store.items():
-                own = np.moveaxis(signals[name], 0, 1)
-                if end - begin < chunk.count:
-                    own = own[:, simulations[begin:end] - chunk.first]
-                values[samples, begin:end] = own
 
     def signals(self) -> dict[str, np.ndarray]:
         """What happened within the last policy step, at the start of each substep; needs

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from hyperleg_design.simulation.model import PAD_SENSOR_SIZE
 from hyperleg_design.simulation.state import Goal, Motion, State, read_motion
 from hyperleg_design.simulation.stepping.batch_models import give_models, vary_models
 from hyperleg_design.simulation.stepping.divergence import all_sound, broken
-from hyperleg_design.simulation.stepping.record import Record
+from hyperleg_design.simulation.stepping.record import Record, signals_of
 from hyperleg_design.simulation.stepping.sensing import sensed
 from hyperleg_design.simulation.stepping.start import Starter
 from hyperleg_design.simulation.stepping.step import Divergence, Step
@@ -91,18 +91,12 @@ class Chunk:
         self.batch.reset(None, 0, 0)
         self._standing = self.batch.state.copy()
         self._pelvis = model.body(layout.base).id
-        joints, motors, substeps = (
-            len(layout.joints),
-            len(layout.motors),
-            int(task.physics.substeps),
-        )
+        joints, motors = len(layout.joints), len(layout.motors)
+        substeps = int(task.physics.substeps)
         self.action, self.previous_action, self.smoothed = (
             np.zeros((count, joints)) for _ in range(3)
         )
-        self.motor_torque, self.motor_velocity = (
-            np.zeros((substeps, count, motors)),
-            np.zeros((substeps, count, motors)),
-        )
+        self.motor_torque, self.motor_velocity = np.zeros((2, substeps, count, motors))
         self.sensors = np.zeros((substeps, count, self._sensors.shape[-1]))
         self.target = np.zeros((count, joints))
         """Joint angles that the controller was asked for in the last policy step [rad]."""
@@ -181,9 +175,7 @@ class Chunk:
         if diverged:
             ending[diverged] = terminations.DIVERGED
         terminated = terminations.fell(ending)
-        state = self._state(
-            self.thermal.advance(self.motor_torque / self._rated, duration), terminated
-        )
+        state = self._state(terminated)
         reward_terms = (
             self._rewards(state) * duration
             if self.rewarded
@@ -224,6 +216,8 @@ class Chunk:
         return np.asarray((self._clock_start + elapsed) % 1.0)
 
     def _physics(self) -> None:
+        if self._running is not None and not len(self._running):
+            return
         self.target = self.layout.default + self.task.control.scale * self.smoothed
         target = self.target.reshape(self.count, len(self.layout.limbs), -1)
         assisted = self.assist is not None and self.assist.active
@@ -248,8 +242,7 @@ class Chunk:
         failed: np.ndarray | None = None
         self._turn.release()
         try:
-            if self._running is None or len(self._running):
-                self.batch.step(self._running)
+            self.batch.step(self._running)
         except SimulationError as error:
             failed = error.ids
         finally:
@@ -273,10 +266,16 @@ class Chunk:
             change = self.rng.uniform(-settings.push_speed, settings.push_speed, (self.count, 2))
             self.drive.qvel[hit, :2] += change[hit]
 
-    def _state(self, thermal_excess: np.ndarray, terminated: np.ndarray) -> State:
-        """State of all simulations after physics."""
-        torque, speed = self.motor_torque, self.motor_velocity
-        pad_load = models.pad_loads(self.sensors)
+    def _state(self, terminated: np.ndarray) -> State:
+        """State of all simulations after physics; what only rewards see is left out without."""
+        seen = slice(None) if self.rewarded else slice(-1, None)
+        torque, speed = self.motor_torque[seen], self.motor_velocity[seen]
+        pad_load = models.pad_loads(self.sensors[seen])
+        power = thermal_excess = np.zeros(self.count)
+        if self.rewarded:
+            power = np.einsum("snk,snk->n", self._heat * torque + speed, torque) / len(torque)
+            duration = self.task.physics.policy_step
+            thermal_excess = self.thermal.advance(torque / self._rated, duration)
         return State(
             motion=self.motion,
             action=self.action,
@@ -287,7 +286,7 @@ class Chunk:
             pad_load=pad_load,
             foot_load=models.foot_loads(pad_load, self.layout.pads_of_foot),
             pad_slip=models.pad_slip(self.sensors[-1]),
-            power=np.einsum("snk,snk->n", self._heat * torque + speed, torque) / len(torque),
+            power=power,
             thermal_excess=thermal_excess,
             phase=self.phase,
             terminated=terminated,
@@ -300,10 +299,8 @@ class Chunk:
         motion = self._start(ids)
         goal = self.commander.reset(ids, motion, self.rng.of(ids))
         count, substeps, joints = len(ids), len(self.sensors), len(self.layout.joints)
-        motors, pads = (
-            np.zeros((substeps, count, len(self.layout.motors))),
-            np.zeros((substeps, count, len(self.layout.pads))),
-        )
+        motors = np.zeros((substeps, count, len(self.layout.motors)))
+        pads = np.zeros((substeps, count, len(self.layout.pads)))
         none = np.zeros(count)
         return State(
             motion=motion,
@@ -377,20 +374,24 @@ class Chunk:
         self.smoothed[ids] = start.smoothed
         return read_motion(start.position, start.velocity)
 
-    def signals(self, *, friction: bool = True) -> Mapping[str, Any]:
-        """Collect what happened within the last policy step; see `Environment.signals`.
-
-        Args:
-            friction: also `joint_friction`, which must be computed anew.
-
-        Returns:
-            Arrays by name.
+    @property
+    def samples(self) -> dict[str, np.ndarray]:
+        """What was recorded in the last policy step, by name, `(substeps, n, ...)` each, not to be
+        written into; `joint_target` with one sample.
         """
-        signals = self.record.signals(self.motor_torque, self.motor_velocity, friction=friction) | {
-            "joint_target": np.broadcast_to(self.target, (len(self.sensors), *self.target.shape)),
+        return self.record.samples | {
             "motor_torque": self.motor_torque,
             "motor_velocity": self.motor_velocity,
-            "pad_force": models.pad_forces(self.sensors),
-            "pad_slip": models.pad_slip(self.sensors),
+            "joint_target": self.target[None],
+            "pads": self.sensors,
         }
+
+    def signals(self) -> dict[str, np.ndarray]:
+        """Collect what happened within the last policy step; see `Environment.signals`.
+
+        Returns:
+            Arrays by name, `(n, substeps, ...)` each.
+        """
+        signals = signals_of(self.samples, self.layout, self.drive.model.joint_from_motor)
+        signals["joint_friction"] = self.record.friction(self.motor_velocity)
         return {name: np.moveaxis(values, 0, 1) for name, values in signals.items()}

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from hyperleg_design.simulation.drives.actuation import applied
 from hyperleg_design.simulation.drives.drive import Drive
-from hyperleg_design.simulation.drives.told import Told
+from hyperleg_design.simulation.drives.told import TOLD, Told
 from hyperleg_design.simulation.layout import Layout
+from hyperleg_design.simulation.model import pad_forces, pad_slip
 
 
 class Record:
@@ -65,6 +68,21 @@ class Record:
                 matrix, driven.motor_damping * applied(np.swapaxes(matrix, -1, -2), velocity)
             )
 
+    def friction(self, motor_velocity: np.ndarray) -> np.ndarray:
+        """Compute the friction at the joints in each substep.
+
+        Args:
+            motor_velocity: of the motors [rad/s], `(substeps, n, K)`.
+
+        Returns:
+            The torque, with what alterations add [Nm], `(substeps, n, J)`.
+        """
+        velocity = self.states[..., 13 + len(self.layout.joints) :]
+        legs = (*velocity.shape[:2], len(self.layout.limbs), -1)
+        torque = self.drive.friction(velocity.reshape(legs), motor_velocity.reshape(legs))
+        torque = torque.reshape(velocity.shape)
+        return torque if self.altered is None else torque + self.altered[:, 1]
+
     def forget(self, ids: np.ndarray) -> None:
         """Set what is kept of some simulations to zero.
 
@@ -76,49 +94,56 @@ class Record:
         if self.told is not None:
             self.told.forget(ids)
 
-    def signals(
-        self, motor_torque: np.ndarray, motor_velocity: np.ndarray, *, friction: bool
-    ) -> dict[str, np.ndarray]:
-        """Collect the signals of base, joints and alterations; see `Environment.signals`.
-
-        Args:
-            motor_torque: of the motors in each substep, `(substeps, n, motors)` [Nm].
-            motor_velocity: of the same, `(substeps, n, motors)` [rad/s].
-            friction: also `joint_friction`, which must be computed anew.
-
-        Returns:
-            Arrays by name, `(substeps, n, ...)` each.
+    @property
+    def samples(self) -> dict[str, np.ndarray]:
+        """What was kept in the last policy step, by name, `(substeps, n, ...)` each, not to be
+        written into: `state`, `stops`; with alterations also `altered_torque` and those of
+        `told.Told`.
         """
-        joints = len(self.layout.joints)
-        substeps, count = self.stops.shape[:2]
-        position, velocity = self.states[..., : 7 + joints], self.states[..., 7 + joints :]
-        legs = (substeps, count, len(self.layout.limbs), -1)
-        matrix = self.drive.model.joint_from_motor
-        torque = np.einsum("...jm,...m->...j", matrix, motor_torque.reshape(legs))
-        signals = {"driven_joint_torque": torque.reshape(substeps, count, -1)}
-        if self.altered is not None:
-            signals["driven_joint_torque"] = self.altered[:, 0].copy()
-        if friction:
-            resistance = self.drive.friction(
-                velocity[..., 6:].reshape(legs), motor_velocity.reshape(legs)
-            ).reshape(substeps, count, -1)
-            signals["joint_friction"] = (
-                resistance if self.altered is None else resistance + self.altered[:, 1]
-            )
-        signals |= {
-            "base_position": position[..., :3],
-            "base_orientation": position[..., 3:7],
-            "base_velocity": velocity[..., :3],
-            "base_angular_velocity": velocity[..., 3:6],
-            "joint_position": position[..., 7:],
-            "joint_velocity": velocity[..., 6:],
-            "stop_torque": self._stop_torque(position[..., 7:]),
-        }
-        return signals if self.told is None else signals | self.told.signals
+        samples = {"state": self.states, "stops": self.stops}
+        if self.told is None or self.altered is None:
+            return samples
+        return {**samples, "altered_torque": self.altered[:, 0], **self.told.signals}
 
-    def _stop_torque(self, position: np.ndarray) -> np.ndarray:
-        """Torque of the stops on the joints, toward the middle of the range of motion [Nm],
-        `(substeps, n, J)`.
-        """
-        middle = (self.layout.lower + self.layout.upper) / 2
-        return np.where(position < middle, self.stops, -self.stops)
+
+def signals_of(
+    samples: Mapping[str, np.ndarray], layout: Layout, joint_from_motor: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Compute signals of base, joints, motors and pads from what was recorded.
+
+    Args:
+        samples: by name, as `Chunk.samples` gives them, `(t, ...)` each with the same axes after
+            time; `joint_target` has one sample for each policy step.
+        layout: of the simulations.
+        joint_from_motor: M [-], `(..., joints, motors)` of one limb.
+
+    Returns:
+        Arrays by name, `(t, ...)` each, without `joint_friction`; see `Environment.signals`. Those
+        of base and joints are views of the samples.
+    """
+    joints, torque = len(layout.joints), samples["motor_torque"]
+    position = samples["state"][..., : 7 + joints]
+    velocity = samples["state"][..., 7 + joints :]
+    driven = samples.get("altered_torque")
+    if driven is None:
+        legs = torque.reshape(*torque.shape[:-1], len(layout.limbs), -1)
+        driven = np.einsum("...jm,...m->...j", joint_from_motor, legs)
+        driven = driven.reshape(position[..., 7:].shape)
+    middle, stops = (layout.lower + layout.upper) / 2, samples["stops"]
+    repeats = len(torque) // max(len(samples["joint_target"]), 1)
+    return {
+        "base_position": position[..., :3],
+        "base_orientation": position[..., 3:7],
+        "base_velocity": velocity[..., :3],
+        "base_angular_velocity": velocity[..., 3:6],
+        "joint_target": np.repeat(samples["joint_target"], repeats, 0),
+        "joint_position": position[..., 7:],
+        "joint_velocity": velocity[..., 6:],
+        "driven_joint_torque": driven,
+        "stop_torque": np.where(position[..., 7:] < middle, stops, -stops),
+        "motor_torque": torque,
+        "motor_velocity": samples["motor_velocity"],
+        "pad_force": pad_forces(samples["pads"]),
+        "pad_slip": pad_slip(samples["pads"]),
+        **{name: values for name, values in samples.items() if name.startswith(TOLD)},
+    }

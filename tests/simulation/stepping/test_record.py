@@ -5,6 +5,7 @@ import pytest
 
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.simulation.stepping.record import signals_of
 from hyperleg_design.simulation.tasks import load_task
 
 
@@ -62,3 +63,17 @@ def test_alterations_that_change_nothing_record_the_same_torques(design) -> None
     np.testing.assert_allclose(theirs["told_joint_position"], theirs["joint_position"], atol=1e-12)
     plain.close()
     altered.close()
+
+
+@pytest.mark.parametrize("alterations", [None, (Alteration(),)])
+def test_samples_of_one_simulation_give_its_signals(design, alterations) -> None:
+    made = recorded(design, alterations)
+    chunk, whole = made.chunks[0], made.signals()
+    assert set(whole) - {"joint_friction"} >= {"base_position", "joint_target", "pad_slip"}
+    for row in range(3):
+        own = {name: values[:, row] for name, values in chunk.samples.items()}
+        signals = signals_of(own, made.layouts[0], chunk.drive.model.joint_from_motor)
+        assert set(signals) == set(whole) - {"joint_friction"}
+        for name, values in signals.items():
+            np.testing.assert_array_equal(values, whole[name][row], err_msg=name)
+    made.close()
