@@ -79,8 +79,10 @@ def states_of(policy, designs, protocol):
     return environment, robots, moments
 
 
-def bare_seconds(environment, robots, moments):
-    """Processor time of one simulation step of one robot in bare physics [s]."""
+def bare_seconds(environment, robots, moments, calls=1):
+    """Processor time of one simulation step of one robot in bare physics [s], with the steps of a
+    policy step in one call or in several.
+    """
     from mujoco import batch
 
     bare = batch.Batch(robots[0], len(robots), 1)
@@ -90,7 +92,8 @@ def bare_seconds(environment, robots, moments):
         bare.state[:] = state
         bare.expand("dof_damping")[:] = damping
         start = time.process_time()
-        bare.step(nstep=substeps)
+        for _ in range(calls):
+            bare.step(nstep=substeps // calls)
         spent.append(time.process_time() - start)
     return float(np.median(spent)) / (len(robots) * substeps)
 
@@ -167,6 +170,7 @@ def main() -> None:
         )
         print(f"mujoco.batch without contact sensors: {plain:.1f} us a step of a robot")
     bare = bare_seconds(environment, robots, moments)
+    single = bare_seconds(environment, robots, moments, int(environment.task.physics.substeps))
     physics = bare * sum(ends) / float(environment.task.physics.time_step)
     whole = spent["built"] + spent["evaluated"]
     print(
@@ -177,7 +181,8 @@ def main() -> None:
     )
     print(
         f"bare physics over evaluation: {physics / spent['evaluated']:.2f} with models at hand, "
-        f"{physics / whole:.2f} with models built"
+        f"{physics / whole:.2f} with models built; at most {bare / single:.2f} where torques "
+        f"are set before each step ({1e6 * single:.1f} us a step of a robot in a call of its own)"
     )
 
 

@@ -200,7 +200,7 @@ def record(
             before_step(environment)
         step = environment.step(action)
         observation = step.observations["policy"]
-        blocks.keep([chunk.samples for chunk in environment.chunks], running)
+        blocks.keep([chunk.samples() for chunk in environment.chunks], running)
         divergences.update({d.simulation: d for d in step.divergences if running[d.simulation]})
         ended = step.ended[running[step.ended]]
         for trial in ended:

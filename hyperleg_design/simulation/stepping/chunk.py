@@ -374,16 +374,19 @@ class Chunk:
         self.smoothed[ids] = start.smoothed
         return read_motion(start.position, start.velocity)
 
-    @property
     def samples(self) -> dict[str, np.ndarray]:
-        """What was recorded in the last policy step, by name, `(substeps, n, ...)` each, not to be
-        written into; `joint_target` with one sample.
+        """Collect what was recorded in the last policy step, for `signals_of`.
+
+        Returns:
+            By name, `(substeps, n, ...)` each, not to be written into; `joint_target` with one
+            sample.
         """
-        return self.record.samples | {
+        return self.record.samples() | {
             "motor_torque": self.motor_torque,
             "motor_velocity": self.motor_velocity,
             "joint_target": self.target[None],
-            "pads": self.sensors,
+            "pad_force": models.pad_forces(self.sensors),
+            "pad_slip": models.pad_slip(self.sensors),
         }
 
     def signals(self) -> dict[str, np.ndarray]:
@@ -392,6 +395,6 @@ class Chunk:
         Returns:
             Arrays by name, `(n, substeps, ...)` each.
         """
-        signals = signals_of(self.samples, self.layout, self.drive.model.joint_from_motor)
+        signals = signals_of(self.samples(), self.layout, self.drive.model.joint_from_motor)
         signals["joint_friction"] = self.record.friction(self.motor_velocity)
         return {name: np.moveaxis(values, 0, 1) for name, values in signals.items()}

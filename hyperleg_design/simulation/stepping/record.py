@@ -8,9 +8,8 @@ import numpy as np
 
 from hyperleg_design.simulation.drives.actuation import applied
 from hyperleg_design.simulation.drives.drive import Drive
-from hyperleg_design.simulation.drives.told import TOLD, Told
+from hyperleg_design.simulation.drives.told import Told
 from hyperleg_design.simulation.layout import Layout
-from hyperleg_design.simulation.model import pad_forces, pad_slip
 
 
 class Record:
@@ -94,13 +93,17 @@ class Record:
         if self.told is not None:
             self.told.forget(ids)
 
-    @property
     def samples(self) -> dict[str, np.ndarray]:
-        """What was kept in the last policy step, by name, `(substeps, n, ...)` each, not to be
-        written into: `state`, `stops`; with alterations also `altered_torque` and those of
-        `told.Told`.
+        """Collect what was kept in the last policy step.
+
+        Returns:
+            By name, `(substeps, n, ...)` each, not to be written into: `state`, `stop_torque`; with
+            alterations also `altered_torque` and those of `told.Told`.
         """
-        samples = {"state": self.states, "stops": self.stops}
+        middle = (self.layout.lower + self.layout.upper) / 2
+        position = self.states[..., 7 : 7 + len(self.layout.joints)]
+        stops = np.where(position < middle, self.stops, -self.stops)
+        samples = {"state": self.states, "stop_torque": stops}
         if self.told is None or self.altered is None:
             return samples
         return {**samples, "altered_torque": self.altered[:, 0], **self.told.signals}
@@ -118,32 +121,24 @@ def signals_of(
         joint_from_motor: M [-], `(..., joints, motors)` of one limb.
 
     Returns:
-        Arrays by name, `(t, ...)` each, without `joint_friction`; see `Environment.signals`. Those
-        of base and joints are views of the samples.
+        Arrays by name, `(t, ...)` each, without `joint_friction`; see `Environment.signals`. Most
+        are the samples themselves or views of them.
     """
-    joints, torque = len(layout.joints), samples["motor_torque"]
-    position = samples["state"][..., : 7 + joints]
-    velocity = samples["state"][..., 7 + joints :]
-    driven = samples.get("altered_torque")
+    signals = dict(samples)
+    state, driven = signals.pop("state"), signals.pop("altered_torque", None)
+    target, torque, joints = samples["joint_target"], samples["motor_torque"], len(layout.joints)
+    position, velocity = state[..., : 7 + joints], state[..., 7 + joints :]
     if driven is None:
         legs = torque.reshape(*torque.shape[:-1], len(layout.limbs), -1)
         driven = np.einsum("...jm,...m->...j", joint_from_motor, legs)
         driven = driven.reshape(position[..., 7:].shape)
-    middle, stops = (layout.lower + layout.upper) / 2, samples["stops"]
-    repeats = len(torque) // max(len(samples["joint_target"]), 1)
-    return {
+    return signals | {
         "base_position": position[..., :3],
         "base_orientation": position[..., 3:7],
         "base_velocity": velocity[..., :3],
         "base_angular_velocity": velocity[..., 3:6],
-        "joint_target": np.repeat(samples["joint_target"], repeats, 0),
+        "joint_target": np.repeat(target, len(torque) // max(len(target), 1), 0),
         "joint_position": position[..., 7:],
         "joint_velocity": velocity[..., 6:],
         "driven_joint_torque": driven,
-        "stop_torque": np.where(position[..., 7:] < middle, stops, -stops),
-        "motor_torque": torque,
-        "motor_velocity": samples["motor_velocity"],
-        "pad_force": pad_forces(samples["pads"]),
-        "pad_slip": pad_slip(samples["pads"]),
-        **{name: values for name, values in samples.items() if name.startswith(TOLD)},
     }

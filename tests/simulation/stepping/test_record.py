@@ -71,7 +71,7 @@ def test_samples_of_one_simulation_give_its_signals(design, alterations) -> None
     chunk, whole = made.chunks[0], made.signals()
     assert set(whole) - {"joint_friction"} >= {"base_position", "joint_target", "pad_slip"}
     for row in range(3):
-        own = {name: values[:, row] for name, values in chunk.samples.items()}
+        own = {name: values[:, row] for name, values in chunk.samples().items()}
         signals = signals_of(own, made.layouts[0], chunk.drive.model.joint_from_motor)
         assert set(signals) == set(whole) - {"joint_friction"}
         for name, values in signals.items():
