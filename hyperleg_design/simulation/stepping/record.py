@@ -106,7 +106,7 @@ class Record:
         samples = {"state": self.states, "stop_torque": stops}
         if self.told is None or self.altered is None:
             return samples
-        return {**samples, "altered_torque": self.altered[:, 0], **self.told.signals}
+        return {**samples, "altered_torque": self.altered[:, 0].copy(), **self.told.signals}
 
 
 def signals_of(
