@@ -47,11 +47,11 @@ class SignalBlocks:
             count = next(iter(samples.values())).shape[1]
             end = int(np.searchsorted(rows, first + count))
             for name, values in samples.items():
-                kept = self._blocks[name][-1][place, :, begin:end]
+                stored = self._blocks[name][-1][place, :, begin:end]
                 if end - begin == count:
-                    kept[:] = values
+                    stored[:] = values
                 elif end > begin:
-                    np.take(values, rows[begin:end] - first, 1, kept, "clip")
+                    np.take(values, rows[begin:end] - first, 1, stored, "clip")
             first, begin = first + count, end
         self._steps += 1
 
