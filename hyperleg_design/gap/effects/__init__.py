@@ -26,8 +26,14 @@ def _found() -> dict[str, Effect]:
     return dict(sorted(found.items()))
 
 
-EFFECTS: dict[str, Effect] = _found()
-"""By identifier, in the order of the alphabet."""
+WEIGHED: dict[str, Effect] = _found()
+"""All effects that compete for an answer, by identifier, in the order of the alphabet."""
+
+EFFECTS: dict[str, Effect] = {name: one for name, one in WEIGHED.items() if one.listed}
+"""Those of them that answers name as causes: the catalogue."""
+
+UNLISTED = WEIGHED.keys() - EFFECTS.keys()
+"""Identifiers of the others."""
 
 LOOK_ALIKES: tuple[tuple[str, str, str], ...] = tuple(
     (one.identifier, other, by) for one in EFFECTS.values() for other, by in one.look_alikes.items()

@@ -60,6 +60,9 @@ class Effect(ABC):
     linear: ClassVar[bool] = False
     """Whether the trace is linear in (values - nulls), but for parameters that only shape it: these
     are one of `variants`."""
+    listed: ClassVar[bool] = True
+    """Whether the catalogue has it, so that answers name it as a cause. One that it lacks competes
+    with those that it has; where it wins, something unlisted acts, which `describe` tells."""
     rare: ClassVar[float] = 0.0
     """Log prior odds over those of an effect that looks like it, of one that is rarer [nat]."""
     driver: ClassVar[str] = ""
@@ -344,6 +347,17 @@ class Effect(ABC):
             Quantities by name, each with its unit.
         """
         return {}
+
+    def describe(self, values: np.ndarray) -> str:
+        """Describe in words an effect that is not `listed`.
+
+        Args:
+            values: of the parameters `(parameters,)`.
+
+        Returns:
+            A sentence whose subject is the location.
+        """
+        return ""
 
     def torque_slope(self, signals: Signals, motor: int, joint: int) -> np.ndarray:
         """Compute how the factor on a trusted torque changes with the first parameter.

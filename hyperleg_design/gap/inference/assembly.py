@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference import noise_model, nuisance, nuisance_traces
 from hyperleg_design.gap.inference.channels.channel import Channel
 from hyperleg_design.gap.inference.channels.discrepancy import MOTORS, load, shapes
@@ -176,7 +176,7 @@ def evidence_of(
         tuple(references),
         {
             (effect.identifier, place, parameter): float(spread)
-            for effect in EFFECTS.values()
+            for effect in WEIGHED.values()
             for place, spreads in effect.usual_errors(subject, tests[0].step).items()
             for parameter, spread in enumerate(spreads)
         },

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.special import log_ndtr
 
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE
 from hyperleg_design.gap.inference.prior_odds import prior_odds
 
@@ -40,7 +40,7 @@ def log_prior(
         for cause in one.causes:
             values = hypothesis.values(place)
             odds.append(
-                EFFECTS[cause.effect].odds(cause.location, evidence.signals[0].subject, values)
+                WEIGHED[cause.effect].odds(cause.location, evidence.signals[0].subject, values)
                 + min(prior_odds(cause, values), 0.0)
                 + beyond_usual(hypothesis, place, evidence, rules)
             )

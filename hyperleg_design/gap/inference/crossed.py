@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.effects import UNLISTED
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
 
@@ -27,7 +28,8 @@ class Prediction:
     trace: np.ndarray
     """What the other causes leave `(S,)`."""
     unlisted: np.ndarray
-    """What only a discrepancy larger than a healthy robot's explains `(S,)`."""
+    """What only effects that are not listed, and a discrepancy larger than a healthy robot's,
+    explain `(S,)`."""
 
     @property
     def after(self) -> np.ndarray:
@@ -54,11 +56,10 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
     stack = Stack.of(hypothesis.causes, weight) if hypothesis.causes else None
     before = np.zeros(len(fold))
     trace, unlisted = np.zeros(len(fold)), np.zeros(len(fold))
-    changed = [not cause.standing for cause in hypothesis.causes]
     for held in range(samples.folds):
         kept = (fold != held) | ~tested
         channels = tuple(_without(one, kept) for one in evidence.channels)
-        left, own = np.zeros(len(fold)), np.zeros(len(fold))
+        left, own, odd = np.zeros((3, len(fold)))
         if stack is not None:
             last = bool(stack.constant.any())
             columns = stack.columns * kept
@@ -67,11 +68,10 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
             products = shifted(reduced(part, hypothesis.scales, columns), last)
             found = solve(products, stack.low, stack.high, stack.shape, rules, stack.factors)
             left = found.theta @ stack.columns + stack.constant
-            for piece, cause, counts in zip(
-                hypothesis.parts, hypothesis.causes, changed, strict=True
-            ):
-                if counts:
-                    own += cause.trace(found.theta[piece]) * weight
+            for piece, cause in zip(hypothesis.parts, hypothesis.causes, strict=True):
+                if not cause.standing:
+                    sum_of = odd if cause.effect in UNLISTED else own
+                    sum_of += cause.trace(found.theta[piece]) * weight
         for whole, some, scales in zip(evidence.channels, channels, hypothesis.scales, strict=True):
             means, _ = some.without(left * kept).discrepancy(scales)
             healthy = healthy_share(whole, scales, rules)
@@ -81,9 +81,9 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
                     continue
                 at = place[mine]
                 explained = means[whole.session[cell]] @ white[:-1, mine]
-                standing = left[at] - own[at]
+                standing = left[at] - own[at] - odd[at]
                 before[at] = (white[-1, mine] - healthy * explained - standing) / weight[at]
-                unlisted[at] = (1 - healthy) * explained / weight[at]
+                unlisted[at] = ((1 - healthy) * explained + odd[at]) / weight[at]
                 trace[at] = own[at] / weight[at]
     return Prediction(before, trace, unlisted)
 

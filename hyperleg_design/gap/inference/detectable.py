@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects import EFFECTS, UNLISTED
 from hyperleg_design.gap.inference import screen
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def detectable(search: Search) -> tuple[Detectable, ...]:
     """Of each effect and place with one parameter that is a size and a trace that grows with it."""
     entries: list[tuple[str, str, int, float, float, float]] = []
     for (name, place, standing), traced in search.traces.items():
-        if standing or isinstance(traced, screen.NotJudged):
+        if standing or isinstance(traced, screen.NotJudged) or name in UNLISTED:
             continue
         effect = EFFECTS[name]
         subject = search.evidence.signals[0].subject

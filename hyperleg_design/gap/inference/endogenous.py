@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.placing import is_measured
 from hyperleg_design.gap.inference.shrinking import Shrinking, shrinking
 
@@ -70,7 +70,7 @@ def factor(
     the residual trusts.
     """
     subject = samples.filtered_logs[0].signals.subject
-    scaling = EFFECTS[effect]
+    scaling = WEIGHED[effect]
     if values is not None and (noise := shrinking(samples, scaling, location, usual, values)):
         return noise
     if scaling.scales == "motor":

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.families import IN_DRIVES
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.cause_prior import log_prior
@@ -95,7 +95,7 @@ class HypothesisFit:
         if isinstance(traced, list):
             return Candidate(promise.effect, promise.location, (traced[promise.variant],))
         assert not isinstance(traced, screen.NotJudged)
-        effect = EFFECTS[promise.effect]
+        effect = WEIGHED[promise.effect]
         subject = self.evidence.signals[0].subject
         low, high = effect.bounds(promise.location, subject)
         values = np.array(traced[0][promise.variant], float)
@@ -160,7 +160,7 @@ class HypothesisFit:
                 samples = (
                     evidence.samples if cause.standing else tests if wanted else evidence.tests
                 )
-                again = screen.linearise(samples, EFFECTS[cause.effect], cause.location, at)
+                again = screen.linearise(samples, WEIGHED[cause.effect], cause.location, at)
                 if again is not None:
                     cause, moved = self._instead(cause, again, wanted), True
                 causes.append(cause)

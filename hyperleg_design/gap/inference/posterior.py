@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.effects import UNLISTED
 from hyperleg_design.gap.inference.cause_prior import beyond_usual
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Name
 from hyperleg_design.gap.inference.unlisted import unlisted
@@ -46,6 +47,8 @@ class Posterior:
     """Other candidates and the best hypothesis with each, most probable first."""
     alike: tuple[tuple[Name, ...], ...]
     """For each candidate in `order`, what cannot be told from it."""
+    odd: tuple[int, ...]
+    """Its candidates that are faults and not `listed`, `standing` ones, too."""
     closed: float
     """Share of the excess gap that the causes close."""
     remainder: float
@@ -74,21 +77,23 @@ def posterior_of(
         for name in sorted(names):
             probability[name] = probability.get(name, 0.0) + weight
     probability = {name: min(p, own.most_certain) for name, p in probability.items()}
-    acting = any(
-        unlisted(channel, scales, rules)
-        for channel, scales in zip(evidence.channels, best.scales, strict=True)
-    )
-    closed = size.closed
-    remainder = float(np.clip(1 - closed, 0.0, 1.0)) if acting else 0.0
     ranked = np.argsort(-np.array(_effects(best)), kind="stable").tolist()
     faults = _faults(best, evidence, rules)
     ranked = [place for place in ranked if best.candidates[place] in faults]
+    odd = tuple(place for place in ranked if best.candidates[place].effect in UNLISTED)
+    acting = any(
+        unlisted(channel, scales, rules)
+        for channel, scales in zip(evidence.channels, best.scales, strict=True)
+    ) or any(not best.candidates[place].standing for place in odd)
+    closed = size.closed
+    remainder = float(np.clip(1 - closed, 0.0, 1.0)) if acting else 0.0
+    ranked = [place for place in ranked if place not in odd]
     order = tuple(place for place in ranked if not best.candidates[place].standing)
     standing = tuple(place for place in ranked if best.candidates[place].standing)
     rivals = _rivals(result, best)
     if not order:
         verdict = "unknown" if acting else "none"
-        return Posterior(verdict, best, (), standing, probability, rivals, (), 0.0, remainder)
+        return Posterior(verdict, best, (), standing, probability, rivals, (), odd, 0.0, remainder)
     sets = tuple(_alike(result, best, place, rules) for place in order)
     main = closed if acting else 1.0
     verdict = "ambiguous" if any(sets) else "explained"
@@ -98,7 +103,9 @@ def posterior_of(
         name: p * (1 - remainder if remainder >= own.remainder and not name[2] else 1.0)
         for name, p in probability.items()
     }
-    return Posterior(verdict, best, order, standing, probability, rivals, sets, closed, remainder)
+    return Posterior(
+        verdict, best, order, standing, probability, rivals, sets, odd, closed, remainder
+    )
 
 
 def _stated(candidate: Candidate) -> list[Name]:
@@ -146,7 +153,7 @@ def _alike(result: Result, best: Hypothesis, place: int, rules: InferenceRules) 
         if len(new) != 1 or not rest <= names or best.candidates[place].name in new:
             continue
         (name,) = new
-        listed = name[1] != EVERYWHERE and not name[2]
+        listed = name[1] != EVERYWHERE and not name[2] and name[0] not in UNLISTED
         if best.score - other.score < rules.posterior.alike and listed:
             found.append(name)
     return tuple(found)
@@ -157,7 +164,7 @@ def _rivals(result: Result, best: Hypothesis) -> tuple[tuple[Hypothesis, Candida
     known = {(cause.effect, cause.location, cause.standing) for cause in best.causes}
     for one in result.hypotheses:
         for candidate in one.candidates:
-            if candidate.standing:
+            if candidate.standing or candidate.effect in UNLISTED:
                 continue
             if candidate.name in seen or known.issuperset(_stated(candidate)[1:]):
                 continue

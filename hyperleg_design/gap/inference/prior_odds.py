@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects import WEIGHED
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.inference.fit import Cause
@@ -24,7 +24,7 @@ inertia)."""
 def prior_odds(cause: Cause, values: np.ndarray) -> float:
     """Of a cause at some values `(k,)` [nat]."""
     free = int((~cause.shape).sum() if cause.linear else (cause.high > cause.low).sum())
-    effect = EFFECTS[cause.effect]
+    effect = WEIGHED[cause.effect]
     found = -PER_PARAMETER * free + effect.rare
     if cause.unseen:
         found += effect.unseen

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 import numpy as np
 
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference.endogenous import factor
 from hyperleg_design.gap.inference.fit import Cause
 
@@ -59,8 +59,8 @@ def places(subject: Subject, effects: Iterable[str] | None = None) -> list[tuple
     """Effects and where they can sit on a robot."""
     return [
         (name, place)
-        for name in (EFFECTS if effects is None else effects)
-        for place in EFFECTS[name].locations(subject)
+        for name in (WEIGHED if effects is None else effects)
+        for place in WEIGHED[name].locations(subject)
     ]
 
 

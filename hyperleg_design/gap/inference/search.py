@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.endogenous import Factor
@@ -163,7 +163,7 @@ class Search:
         known = self._known((*current.candidates, promises[0]))
         if known is not None:
             return known
-        linear = EFFECTS[promises[0].effect].linear
+        linear = WEIGHED[promises[0].effect].linear
         apart: list[Candidate] = []
         for promise in promises[: 1 if linear else None]:
             candidate = self.fits.candidate(promise, current)
@@ -184,7 +184,7 @@ class Search:
         if current.causes:
             start = self._gain(current.causes, scales)
         for effect, standing in sorted({(name[0], name[2]) for name in promises} - acting):
-            if not EFFECTS[effect].linear or self.count[effect] < 2:
+            if not WEIGHED[effect].linear or self.count[effect] < 2:
                 continue
             own = sorted(name for name in promises if (name[0], name[2]) == (effect, standing))
             causes = [self.fits.candidate(promises[name][0], current) for name in own]
@@ -231,7 +231,7 @@ def traces_of(
 
 def _traced(evidence: Evidence, place: tuple[str, str]) -> list[screen.Traces]:
     """In the logs under test and, with references, in all logs."""
-    whole = screen.trace(evidence.samples, EFFECTS[place[0]], place[1])
+    whole = screen.trace(evidence.samples, WEIGHED[place[0]], place[1])
     if isinstance(whole, screen.NotJudged):
         return [whole] * (2 if evidence.references else 1)
     count = len(evidence.tests.value)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design import provenance
+from hyperleg_design.gap.effects import UNLISTED, WEIGHED
 from hyperleg_design.gap.experiments import experiment
 from hyperleg_design.gap.inference.assembly import Evidence, evidence_of
 from hyperleg_design.gap.inference.crossed import predicted
@@ -31,6 +32,7 @@ from hyperleg_design.gap.signals.signals import RESIDUALS
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.checks.check import Check
+    from hyperleg_design.gap.inference.fit import Cause
     from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
     from hyperleg_design.gap.inference.rules import InferenceRules
     from hyperleg_design.gap.signals.signals import Signals
@@ -133,6 +135,7 @@ class _Answer:
             not_judged=tuple(
                 {"effect": n.effect, "location": n.location, "reason": n.reason}
                 for n in self.result.not_judged
+                if n.effect not in UNLISTED
             ),
             residual_shape=self.shape(),
             checks=self.remarks(checks),
@@ -250,6 +253,16 @@ class _Answer:
             if value / total >= LEAST_SHARE
         )
 
+    def odd(self) -> list[tuple[Cause, str]]:
+        """Causes of the most probable hypothesis that are not listed, with their descriptions."""
+        best = self.posterior.hypothesis
+        unlisted = [best.candidates[place] for place in self.posterior.odd]
+        return [
+            (best.causes[place], WEIGHED[candidate.effect].describe(best.values(place)))
+            for place, candidate in expanded(best.candidates)
+            if candidate in unlisted
+        ]
+
     @cached_property
     def cycling(self) -> dict[str, float]:
         """Joints in a limit cycle that reference logs lack, and its frequency [Hz]."""
@@ -274,6 +287,17 @@ class _Answer:
             }
             for joint, frequency in self.cycling.items()
         ]
+        found.extend(
+            {
+                "shape": cause.effect,
+                "location": cause.location,
+                "says": description,
+                "closed_beyond": self.posterior.remainder,
+                "gain": 0.0,
+            }
+            for cause, description in self.odd()
+            if not cause.standing
+        )
         for place in np.argsort(-left, kind="stable").tolist()[:3]:
             if left[place] <= 0 or self.posterior.remainder <= 0:
                 continue
@@ -301,6 +325,11 @@ class _Answer:
             ]
         for s in (*self.evidence.signals, *self.evidence.references):
             found += [f"{s.log.name}: {note}" for note in s.notes]
+        found.extend(
+            f"references and tests alike: {cause.location} {description}"
+            for cause, description in self.odd()
+            if cause.standing
+        )
         if not self.evidence.references:
             found.append(
                 "no reference logs: what the model leaves is judged by how well robots are known "

@@ -118,6 +118,21 @@ def test_a_strong_cause_is_foretold_and_taken_off():
     np.testing.assert_array_equal(found.noise, found.after - found.unlisted)
 
 
+def test_the_trace_of_an_effect_that_is_not_listed_is_unlisted():
+    rng = np.random.default_rng(5)
+    known = evidence(3, rng)
+    columns = rng.standard_normal((1, len(known.samples.value)))
+    hypothesis = one_cause(known, columns, None)
+    odd = unbounded("leaning_vertical", "robot", columns)
+    candidates = (Candidate("leaning_vertical", "robot", (odd,)),)
+    listed = predicted(known, hypothesis, RULES)
+    found = predicted(known, replace(hypothesis, candidates=candidates), RULES)
+    assert not found.trace.any()
+    np.testing.assert_allclose(found.before, listed.before, atol=1e-12)
+    np.testing.assert_allclose(found.noise, listed.noise, atol=1e-12)
+    np.testing.assert_allclose(found.unlisted, listed.unlisted + listed.trace, atol=1e-12)
+
+
 def test_a_cause_that_references_show_too_is_part_of_what_was_known():
     rng = np.random.default_rng(4)
     known = evidence(3, rng)

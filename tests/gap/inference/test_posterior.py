@@ -110,6 +110,19 @@ def test_what_is_beside_something_unlisted_must_close_the_main_part(closed, verd
     assert found.probability["a", "x", False] <= 1 - found.remainder
 
 
+def test_an_effect_that_is_not_listed_is_no_cause_but_a_remainder():
+    best = hypothesis(30.0, ("leaning_vertical", "robot"))
+    found = answer(hypothesis(0.0), best, hypothesis(20.0, ("a", "x")), closed=0.0)
+    assert (found.verdict, found.order, found.odd) == ("unknown", (), (0,))
+    assert found.remainder == pytest.approx(1.0)
+    assert [candidate.name for _, candidate in found.rivals] == [("a", "x", False)]
+
+
+def test_an_effect_that_is_not_listed_may_stand_in_the_references():
+    found = answer(hypothesis(0.0), hypothesis(30.0, ("leaning_vertical", "robot", True)))
+    assert (found.verdict, found.standing, found.odd) == ("none", (), (0,))
+
+
 def test_without_anything_unlisted_any_part_is_explained():
     found = answer(hypothesis(0.0), hypothesis(30.0, ("a", "x")), closed=0.3)
     assert (found.verdict, found.remainder) == ("explained", 0.0)
