@@ -77,8 +77,7 @@ def beyond_usual(
     hypothesis: Hypothesis, place: int, evidence: Evidence, rules: InferenceRules
 ) -> float:
     """Log posterior probability that one of a cause's parameters lies beyond `usual` deviations of
-    the usual calibration error [nat]: of one that does not, nothing is wrong. What references tell
-    has no such error.
+    the usual calibration error [nat]: of one that does not, nothing is wrong.
 
     Args:
         hypothesis: that it is in.
@@ -87,17 +86,39 @@ def beyond_usual(
         rules: of the inference.
     """
     cause = hypothesis.causes[place]
-    if evidence.references and not cause.standing:
-        return 0.0
     values, deviation = hypothesis.values(place), hypothesis.deviation(place)
-    own, factor = rules.cause, rules.posterior.interval
+    factor = rules.posterior.interval
     odds = []
     for i, (value, null) in enumerate(zip(values, cause.nulls, strict=True)):
-        usual = own.usual * evidence.usual.get((cause.effect, cause.location, i), 0.0)
         if cause.shape[i] or value == null:
             continue
+        key = cause.effect, cause.location, i
+        usual = usual_error(evidence, rules, key, cause.standing)
         if not usual:
             return 0.0
         over = (abs(value - null) - usual) / max(factor * deviation[i], 1e-300)
         odds.append(float(log_ndtr(over)))
     return max(odds, default=0.0)
+
+
+def usual_error(
+    evidence: Evidence,
+    rules: InferenceRules,
+    parameter: tuple[str, str, int],
+    standing: bool = False,
+) -> float:
+    """Size up to which a parameter of an effect is a usual calibration error: `CauseRules.usual`
+    deviations; of one that changed since the references, as far as such errors change from session
+    to session.
+
+    Args:
+        evidence: channels.
+        rules: of the inference.
+        parameter: effect, location, and place among the effect's parameters.
+        standing: whether it acts in the references, too.
+
+    Returns:
+        The size, in the parameter's unit; 0 where no error is usual.
+    """
+    share = rules.discrepancy.change if evidence.references and not standing else 1.0
+    return share * rules.cause.usual * evidence.usual.get(parameter, 0.0)

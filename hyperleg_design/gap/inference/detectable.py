@@ -4,7 +4,9 @@ Beside noise and discrepancy, a trace x has the Fisher information I = x' Sigma^
 size f is expected to gain f^2 I / 2 nats over nothing, with standard deviation f sqrt(I); it must
 gain its prior odds. It is named nine times in ten where
 
-    f sqrt(I) >= sqrt(2 odds) + 1.28.
+    f sqrt(I) >= sqrt(2 odds) + 1.28,
+
+and where it is as clearly larger than a usual calibration error u: f >= u + 1.28 / sqrt(I).
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS, UNLISTED
 from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.cause_prior import usual_error
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.effect import Effect
@@ -73,7 +76,10 @@ def detectable(search: Search) -> tuple[Detectable, ...]:
     for name, place, i, unit_size, limit, own in entries:
         hypotheses = len(search.count) * search.count[name]
         odds = float(np.log(hypotheses / search.rules.cause.probability))
-        size = (np.sqrt(2 * odds) + OFTEN) / np.sqrt(max(own, LEAST)) * unit_size
+        deviation = unit_size / np.sqrt(max(own, LEAST))
+        usual = usual_error(search.evidence, search.rules, (name, place, i))
+        beyond = usual + OFTEN * search.rules.posterior.interval * deviation
+        size = max((np.sqrt(2 * odds) + OFTEN) * deviation, beyond)
         parameter = EFFECTS[name].parameters[i]
         if 0 < size <= limit:
             found.append(Detectable(name, place, parameter.name, float(size), parameter.unit))

@@ -4,8 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
-from hyperleg_design.gap.inference.cause_prior import log_prior
+from hyperleg_design.gap.inference.cause_prior import beyond_usual, log_prior, usual_error
 from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis
 from hyperleg_design.gap.inference.rules import InferenceRules
@@ -54,3 +55,29 @@ def test_it_is_as_likely_as_that_its_sizes_have_one_sign(sizes):
 
 def test_one_place_has_no_other_to_be_like():
     assert prior(1.0, location="hip") == pytest.approx(prior(-1.0, location="hip"))
+
+
+@pytest.mark.parametrize(
+    ("references", "standing", "share"),
+    [((), False, 1.0), (("a log",), True, 1.0), (("a log",), False, RULES.discrepancy.change)],
+)
+def test_a_change_is_no_fault_where_calibration_changes_as_much(references, standing, share):
+    key = "coulomb_friction", "hip", 0
+    evidence = SimpleNamespace(usual={key: 0.1}, references=references)
+    usual = usual_error(evidence, RULES, key, standing)
+    assert usual == pytest.approx(share * RULES.cause.usual * 0.1)
+    one = np.ones(1)
+    cause = SimpleNamespace(
+        effect=key[0], location=key[1], standing=standing, nulls=0 * one, shape=np.zeros(1, bool)
+    )
+    for size in (0.5 * usual, usual, usual + 0.2):
+        hypothesis = SimpleNamespace(
+            causes=[cause], values=lambda _, s=size: s * one, deviation=lambda _: 0.1 * one
+        )
+        chance = norm.cdf((size - usual) / (RULES.posterior.interval * 0.1))
+        assert np.exp(beyond_usual(hypothesis, 0, evidence, RULES)) == pytest.approx(chance)
+
+
+def test_an_effect_that_no_calibration_error_is_like_is_a_fault_of_any_size():
+    evidence = SimpleNamespace(usual={}, references=())
+    assert usual_error(evidence, RULES, ("backlash", "hip", 0)) == 0.0

@@ -9,6 +9,7 @@ import pytest
 from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.inference.cause_prior import usual_error
 from hyperleg_design.gap.inference.detectable import detectable, usual_shape
 
 
@@ -17,9 +18,17 @@ def sizes(search):
     return detectable(search)
 
 
-def test_a_cause_of_this_size_is_named_nine_times_in_ten(search, sizes):
+@pytest.fixture(scope="module")
+def exact(search):
+    """The same search of a robot that nobody calibrates wrongly."""
+    found = type(search).__new__(type(search))
+    found.__dict__ |= vars(search) | {"evidence": replace(search.evidence, usual={})}
+    return found
+
+
+def test_a_cause_of_this_size_is_named_nine_times_in_ten(search, exact):
     evidence, scales = search.evidence, search.fits.nothing.scales
-    for one in sizes:
+    for one in detectable(exact):
         (cause,) = search.traces[one.effect, one.location, False]
         unit = cause.columns[0] / cause.usual[0] * evidence.weight
         mean = one.change * unit
@@ -30,6 +39,24 @@ def test_a_cause_of_this_size_is_named_nine_times_in_ten(search, sizes):
             information += channel.reduced(own, cross, square)[1, 1]
         odds = np.log(2 * 2 / 0.5)
         assert norm.sf(np.sqrt(2 * odds) - np.sqrt(information)) == pytest.approx(0.9, abs=1e-3)
+
+
+def test_a_cause_of_this_size_is_nine_times_in_ten_larger_than_a_usual_error(search, sizes, exact):
+    least = {(one.effect, one.location): one.change for one in detectable(exact)}
+    larger = 0
+    for one in sizes:
+        key = one.effect, one.location
+        usual = usual_error(search.evidence, search.rules, (*key, 0))
+        (cause,) = search.traces[*key, False]
+        information = search.promises.information((*key, False), search.fits.nothing.scales)[0]
+        spread = search.rules.posterior.interval * cause.usual[0] / np.sqrt(information)
+        assert usual > 0
+        if one.change > least[key]:
+            larger += 1
+            assert norm.cdf((one.change - usual) / spread) == pytest.approx(0.9, abs=1e-3)
+        else:
+            assert norm.cdf((one.change - usual) / spread) >= 0.9 - 1e-3
+    assert larger
 
 
 def test_each_effect_at_each_place_has_one_size_within_its_bounds(search, sizes):
@@ -49,11 +76,11 @@ def test_what_is_wrong_is_larger_than_what_would_have_been_named(sizes):
     assert least["coulomb_friction", "hip"] < 0.8
 
 
-def test_less_likely_causes_must_be_larger(search, sizes):
+def test_less_likely_causes_must_be_larger(search, exact):
     doubtful = type(search).__new__(type(search))
     cause = replace(search.rules.cause, probability=0.01)
-    doubtful.__dict__ |= vars(search) | {"rules": replace(search.rules, cause=cause)}
-    for one, other in zip(sizes, detectable(doubtful), strict=True):
+    doubtful.__dict__ |= vars(exact) | {"rules": replace(search.rules, cause=cause)}
+    for one, other in zip(detectable(exact), detectable(doubtful), strict=True):
         assert other.change > one.change
 
 
