@@ -61,7 +61,7 @@ class Evidence:
         if not isinstance(factor, Factor):
             return cause
         trace = cause.columns[factor.parameter]
-        row = self.tests.rows[factor.row]
+        row = self.samples.rows[factor.row]  # those of the tests are its first ones
         number = 0.0
         for channel, share in zip(self.channels, self.moved, strict=True):
             own = (channel.residual, channel.column) == (row.residual_name, row.column)

@@ -1,9 +1,13 @@
 """From logs to channels."""
 
+from dataclasses import replace
+
 import diagnosed
 import numpy as np
 import pytest
+from causes import unbounded
 
+from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit
 from hyperleg_design.gap.inference.rules import InferenceRules
 
@@ -35,3 +39,13 @@ def test_usual_errors_are_known_of_places_that_have_no_nuisance_parameter(robot_
     }
     assert loads
     assert all(evidence.usual["link_mass", link, 0] == size for link, size in loads.items() if size)
+
+
+def test_a_cause_may_scale_torques_of_a_row_that_references_alone_have(robot_files):
+    evidence = diagnosed.evidence(robot_files["coupled"], diagnosed.run("healthy", 0))
+    rows = evidence.samples.rows
+    lacking = replace(evidence, tests=replace(evidence.tests, rows=rows[:-1]))
+    factor = Factor(0, np.ones(1), 1.0, row=len(rows) - 1)
+    columns = np.ones((1, len(evidence.samples.value)))
+    cause = replace(unbounded("torque_constant", "m_front", columns), factor=factor)
+    assert lacking.scaled(cause).factor.number == evidence.scaled(cause).factor.number > 0
