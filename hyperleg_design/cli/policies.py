@@ -29,13 +29,17 @@ class Train:
     """Task to train for: a shipped name (`hyperleg list tasks`), or a YAML file."""
     design: str = "toe"
     """Robot to train: a shipped name or a YAML file."""
+    set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """PATH=VALUE to change of the robot, such as toe.mass=0.5."""
+    set_file: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """YAML file of the robot's parameters that differ, applied before --set."""
     seed: Annotated[int, AtLeast(0)] = 0
     """Seed of all random numbers."""
     preset: str = "laptop"
     """Training preset: a shipped name (`hyperleg list presets`), or a YAML file."""
     start: str = ""
-    """Policy of another task to start from: an ONNX file, or the name of a shipped training; from
-    scratch by default."""
+    """Policy of another task or design to start from: an ONNX file, the folder of a training, or
+    the name of a shipped one; from scratch by default."""
     designs: str = ""
     """Designs to draw from, so that one policy learns them all and observes which it has: toe, or
     a YAML file of ranges; the one design by default."""
@@ -79,8 +83,11 @@ class Train:
         given |= {} if self.iterations is None else {"iterations": self.iterations}
         given |= {"designs": self.designs} if self.designs else {}
         arguments = [f"--{key}={value}" for key, value in given.items()]
+        arguments += [f"--set={change}" for change in self.set]
+        arguments += [f"--set-file={file}" for file in self.set_file]
         # What does not fit is an error here, before torch is loaded in a process of its own.
-        robot, task = load_robot(self.design), load_task(self.task)
+        robot = load_robot(self.design, overrides=self.set, overlays=self.set_file)
+        task = load_task(self.task)
         simulation_spec(task.posed(robot), task.physics)
         task.check_robot(layout_of(robot), robot.name)
         if not self.overlay:

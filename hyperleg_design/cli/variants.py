@@ -24,18 +24,31 @@ class Variants(Printing):
     protocol: str = "walk"
     """Walk protocol: shipped name or YAML file."""
     out: Path
-    """Folder to write tables to."""
+    """Folder to write tables to, and each held-out design (0/design.yaml and so on)."""
+    finetune: Annotated[int, AtLeast(0)] = 0
+    """Policy steps by which the first policy is trained on each held-out design, to be compared
+    with it as well; none by default. Needs the learning extra. Killed, it goes on."""
+    workers: Annotated[int, AtLeast(1)] = 2
+    """Number of those trainings that run side by side."""
     threads: Annotated[int, AtLeast(1)] = 1
     """Of the simulation."""
 
     def run(self) -> None:
         """Evaluate, write and print."""
-        from hyperleg_design.evaluation.held_out import check_held_out
+        from hyperleg_design.evaluation.held_out import check_held_out, judged
+        from hyperleg_design.sweep.held_out_tuning import fine_tune_held_out, write_held_out
         from hyperleg_design.writing import MARKER, check_output_folder, write_text
 
+        policies, first = self.policies, str(judged(self.policies))
         folder = check_output_folder(self.out)
-        check = check_held_out(self.policies, self.designs, self.protocol, threads=self.threads)
         write_text(folder / MARKER, "made by hyperleg\n")
+        robots = write_held_out(first, self.designs, folder)
+        if self.finetune:
+            tuned = fine_tune_held_out(
+                first, robots, self.finetune, self.out, workers=self.workers, progress=not self.json
+            )
+            policies = (first, tuned, *policies[1:])
+        check = check_held_out(policies, self.designs, self.protocol, threads=self.threads)
         write_text(folder / "held_out.csv", check.rows.to_csv(index=False))
         write_text(folder / "comparisons.csv", check.comparisons.to_csv(index=False))
         if self.json:

@@ -67,10 +67,9 @@ def check_held_out(
     Raises:
         InputError: no policy, or as in `evaluate_designs`.
     """
-    if not policies or EACH in str(policies[0]):
-        raise InputError("held-out check", "policies", None, "expects one policy for all designs")
+    first_name = judged(policies)
     spread = load_design_spread(designs) if isinstance(designs, str | Path) else designs
-    batch = spread.held_out_designs(load_policy(policies[0]).design)
+    batch = spread.held_out_designs(load_policy(first_name).design)
     robots = [batch.take(i) for i in range(spread.held_out)]
     rows: list[dict[str, Any]] = []
     for policy in policies:
@@ -85,12 +84,29 @@ def check_held_out(
             leaves = {path: float(robot[path]) for path in spread.ranges.ranges}
             rows.append({"policy": str(policy), "design": i, **_row(result), **leaves})
     table = pd.DataFrame(rows)
-    first = table[table["policy"] == str(policies[0])]
+    first = table[table["policy"] == str(first_name)]
     others = [
         {"policy": str(name), **compared(first, table[table["policy"] == str(name)])}
         for name in policies[1:]
     ]
     return HeldOutCheck(table, pd.DataFrame(others))
+
+
+def judged(policies: Sequence[str | Path]) -> str | Path:
+    """Tell which of the policies of a check is judged.
+
+    Args:
+        policies: as in `check_held_out`.
+
+    Returns:
+        The first one.
+
+    Raises:
+        InputError: there is none, or it names one policy for each design.
+    """
+    if not policies or EACH in str(policies[0]):
+        raise InputError("held-out check", "policies", None, "expects one policy for all designs")
+    return policies[0]
 
 
 def compared(first: pd.DataFrame, other: pd.DataFrame) -> dict[str, float]:

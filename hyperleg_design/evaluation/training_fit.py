@@ -11,7 +11,7 @@ import numpy as np
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy
 from hyperleg_design.robot.dimensions import limb_mass, total_mass
 from hyperleg_design.robot.parameters.values import leaves
-from hyperleg_design.simulation.design_observation import design_ranges
+from hyperleg_design.simulation.design_observation import RANGES, design_ranges
 from hyperleg_design.simulation.drives.actuation import actuation_model
 from hyperleg_design.simulation.drives.machine import rotor_inertia
 
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
 
 SPECIALIST, CONDITIONED, ZERO_SHOT, UNKNOWN = "specialist", "conditioned", "zero-shot", "unknown"
-RANGES = "design_ranges"
-"""Metadata of a policy that is conditioned on its design; see `design_observation`."""
 _NO_ROBOT = ("masses.expected_",)
 """Leaves that are printed sums, not parts of a robot."""
 _LAWS = ("reference.", "friction.", "gears.", "masses.")

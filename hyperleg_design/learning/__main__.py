@@ -43,6 +43,8 @@ def main(
             required=name == "out",
             default={"task": "walk", "design": "toe", "preset": "laptop"}.get(name),
         )
+    parser.add_argument("--set", action="append", default=[])
+    parser.add_argument("--set-file", action="append", default=[])
     parser.add_argument("--start")
     parser.add_argument("--designs")
     parser.add_argument("--seed", type=int, default=0)
@@ -61,6 +63,8 @@ def main(
             given.seed,
             given.preset,
             given.out,
+            overrides=given.set,
+            overlays=given.set_file,
             start=given.start,
             designs=given.designs,
             threads=given.threads,

@@ -17,7 +17,7 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +38,7 @@ from hyperleg_design.learning.records.status import (
 from hyperleg_design.learning.resolved import preset_mapping, task_mapping
 from hyperleg_design.learning.training import Training
 from hyperleg_design.robot.described import RobotDesign
-from hyperleg_design.robot.load import load_robot
+from hyperleg_design.robot.load import changed_robot, load_robot
 from hyperleg_design.simulation.alteration import Alterations
 from hyperleg_design.simulation.design_spread import DesignSpread, load_design_spread
 from hyperleg_design.simulation.layout import layout_of
@@ -55,6 +55,8 @@ def train(
     preset: str | Path | Preset,
     out: str | Path,
     *,
+    overrides: Sequence[str] = (),
+    overlays: Sequence[str] = (),
     start: str | Path | None = None,
     designs: str | Path | DesignSpread | None = None,
     threads: int = 1,
@@ -72,8 +74,11 @@ def train(
         seed: of all randomness.
         preset: a preset, its shipped name or file.
         out: folder of the training.
-        start: ONNX policy of another task to start from, of the same robot; from scratch by
-            default.
+        overrides: texts `path=value` to change of the robot.
+        overlays: YAML files of its parameters that differ, applied before `overrides`.
+        start: ONNX policy to start from, of another task or design, of a robot with the same
+            joints; one that is conditioned on its design starts a training of one design inside of
+            its ranges. From scratch by default.
         designs: what designs to draw from, with a shipped name or a file: the policy observes its
             design and learns them all. They are `design` with other leaves. Without, the policy
             learns the one design.
@@ -98,8 +103,9 @@ def train(
         f"hyperleg train --task {_name(task)} --design {_name(design)} --seed {seed} "
         f"--preset {_name(preset)}"
     )
-    started = None if start is None else read_start(start)
-    if started is not None:
+    command += "".join(f" --set-file {overlay}" for overlay in overlays)
+    command += "".join(f" --set {override}" for override in overrides)
+    if start is not None:
         command += f" --start {Path(str(start)).parent.name}/{Path(str(start)).name}"
     if designs is not None:
         command += f" --designs {'designs' if isinstance(designs, DesignSpread) else designs}"
@@ -107,6 +113,9 @@ def train(
     task = task if isinstance(task, Task) else load_task(task)
     task = task.conditioned(spread.ranges) if spread else task
     design = design if isinstance(design, RobotDesign) else load_robot(design)
+    if overrides or overlays:
+        design = changed_robot(design, overrides=overrides, overlays=overlays)
+    started = None if start is None else read_start(start, None if spread else design)
     preset = preset if isinstance(preset, Preset) else load_preset(preset)
     preset.stages(task.name)
     task.check_robot(layout_of(task.posed(design)), design.name)

@@ -19,6 +19,8 @@ from hyperleg_design.robot.parameters import values as parameters
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign
 
+RANGES = "design_ranges"
+"""Metadata of a policy that is conditioned on its design: its ranges."""
 WITHIN = 1e-9
 """Share of a range by which rounding may put a number outside of it."""
 
@@ -97,6 +99,35 @@ class DesignRanges:
             for path, value in zip(self.ranges, numbers, strict=True)
             if not abs(value) <= 1 + 2 * WITHIN
         ]
+
+    def check_inside(self, design: RobotDesign, where: str) -> None:
+        """Check that a policy with these ranges was trained over a robot.
+
+        Args:
+            design: one robot.
+            where: policy or file, for error messages.
+
+        Raises:
+            InputError: the robot lacks a leaf of the ranges, or has a value outside of them.
+        """
+        missing = [path for path in self.ranges if path not in design.rules]
+        if missing:
+            raise InputError(
+                where,
+                missing[0],
+                None,
+                f"is observed by the policy, but {design.name} has no such leaf; choose a robot "
+                f"like those that the policy was trained on",
+            )
+        for path in self.outside(design)[:1]:
+            bounds, value = self.ranges[path], float(design[path])
+            raise InputError(
+                where,
+                path,
+                value,
+                f"expects {bounds.low:g} .. {bounds.high:g}, over which the policy was trained; "
+                f"choose a design inside, or a policy of one design",
+            )
 
     def draw(self, count: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
         """Draw designs evenly over the ranges.

@@ -1,7 +1,8 @@
 """Fine-tuning of a policy to one design, by `hyperleg train` in a process of its own.
 
 The training starts from the policy, with the task and the learner that trained it, under the
-rewards and commands of its end, on the one design.
+rewards and commands of its end, on the one design. Where the policy is conditioned on its design,
+the fine-tuned one is an ordinary policy of the one design.
 
     FOLDER/design.yaml         the design
     FOLDER/NAME.task.yaml      the policy's task
@@ -24,8 +25,8 @@ from typing import TYPE_CHECKING, Any
 from hyperleg_design.errors import InputError, OutputError, in_short
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.shipped import POLICY
-from hyperleg_design.evaluation.training_fit import RANGES
 from hyperleg_design.processes import run_side_by_side
+from hyperleg_design.simulation.design_observation import RANGES, design_ranges
 from hyperleg_design.writing import write_text
 
 if TYPE_CHECKING:
@@ -94,8 +95,8 @@ def check_trainable(path: Path) -> OnnxPolicy:
         The policy.
 
     Raises:
-        InputError: the extra `learning` is not installed, the policy is conditioned on its design,
-            or it does not say how it was trained.
+        InputError: the extra `learning` is not installed, or the policy does not say how it was
+            trained.
     """
     missing = [name for name in NEEDS if importlib.util.find_spec(name) is None]
     if missing:
@@ -103,13 +104,6 @@ def check_trainable(path: Path) -> OnnxPolicy:
             "--finetune", "", None, f"needs {', '.join(missing)}: install hyperleg-design[learning]"
         )
     policy = load_policy(path)
-    if RANGES in policy.metadata:
-        raise InputError(
-            "--finetune",
-            "",
-            policy.name,
-            "is conditioned on its design; a training can start only from a policy of one design",
-        )
     preset = policy.metadata.get("preset")
     if not isinstance(preset, dict) or policy.task.name not in preset.get("tasks", {}):
         raise InputError(
@@ -217,24 +211,51 @@ def fine_tune(trainings: Sequence[FineTuning], *, workers: int, progress: bool =
         )
 
 
+def write_design(design: RobotDesign, folder: Path) -> None:
+    """Write a design as `FOLDER/design.yaml`, which `hyperleg train --design` reads.
+
+    Args:
+        design: one robot.
+        folder: that is made where it is missing.
+
+    Raises:
+        OutputError: the file holds another design.
+    """
+    _write_once(folder / "design.yaml", design.to_mapping())
+
+
 def _write_inputs(training: FineTuning) -> None:
     """Write the design, the task and the preset as files that `hyperleg train` reads."""
+    policy = check_trainable(training.policy)
+    if RANGES in policy.metadata:
+        ranges = design_ranges(policy.metadata[RANGES], f"{policy.name}: {RANGES}")
+        ranges.check_inside(training.design, policy.name)
+    place, name = training.folder, training.name
+    write_design(training.design, place)
+    _write_once(place / f"{name}.task.yaml", _task_of_one_design(policy.metadata["task"]))
+    _write_once(place / f"{name}.preset.yaml", fine_tuning_preset(policy, training.steps))
+
+
+def _write_once(path: Path, content: Mapping[str, Any]) -> None:
+    """Write a mapping as YAML, but never over another one."""
     import yaml
 
-    policy = check_trainable(training.policy)
-    contents = {
-        "design.yaml": training.design.to_mapping(),
-        f"{training.name}.task.yaml": policy.metadata["task"],
-        f"{training.name}.preset.yaml": fine_tuning_preset(policy, training.steps),
+    text = yaml.safe_dump(dict(content), sort_keys=False)
+    if path.is_file() and path.read_text(encoding="utf-8") != text:
+        raise OutputError(
+            f"{path}: is of another design or another run; choose another --out, or delete the "
+            f"folder {path.parent.name}"
+        )
+    write_text(path, text)
+
+
+def _task_of_one_design(task: Mapping[str, Any]) -> dict[str, Any]:
+    """A policy's task, without the design in what it observes."""
+    parts = {
+        group: [part for part in observed if part != "design"]
+        for group, observed in task["observations"].items()
     }
-    for name, content in contents.items():
-        path, text = training.folder / name, yaml.safe_dump(content, sort_keys=False)
-        if path.is_file() and path.read_text(encoding="utf-8") != text:
-            raise OutputError(
-                f"{path}: is of the finalist of another search; choose another --out, or delete "
-                f"the folder {training.folder.name}"
-            )
-        write_text(path, text)
+    return {key: task[key] for key in task if key != "designs"} | {"observations": parts}
 
 
 def _started(training: FineTuning) -> subprocess.Popen[bytes]:

@@ -9,7 +9,7 @@ import time
 import pytest
 import yaml
 
-from hyperleg_design import processes
+from hyperleg_design import processes, resources
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.training_fit import training_fit
@@ -123,7 +123,7 @@ def test_a_folder_holds_the_finalist_of_one_search(tmp_path):
     fine_tuning._write_inputs(job(tmp_path))
     fine_tuning._write_inputs(job(tmp_path))
     other = load_design("toe", overrides={"toe.mass": 0.32})
-    with pytest.raises(OutputError, match="another search"):
+    with pytest.raises(OutputError, match="another design"):
         fine_tuning._write_inputs(dataclasses.replace(job(tmp_path), design=other))
     again = yaml.safe_load((tmp_path / "7" / "design.yaml").read_text())
     assert again["toe"]["mass"]["value"] == 0.31
@@ -194,11 +194,13 @@ time.sleep(60)
 
 
 def test_what_cannot_be_a_start_is_one_clear_error(tmp_path, monkeypatch):
-    from hyperleg_design import resources
-
-    folder = resources.content_folder("sim") / "conditioned"
-    with pytest.raises(InputError, match=r"--finetune.*conditioned on its design"):
-        check_trainable(folder / "walk_upright-toe-0" / "policy.onnx")
+    conditioned = str(
+        resources.content_folder("sim") / "conditioned/walk_upright-toe-0/policy.onnx"
+    )
+    outside = load_design("toe", overrides={"toe.mass": 1.5})
+    with pytest.raises(InputError, match=r"toe\.mass.*expects 0\.05 \.\. 1"):
+        fine_tuning._write_inputs(FineTuning(find_policy(conditioned), outside, 100, tmp_path))
+    assert not list(tmp_path.iterdir())
     monkeypatch.setattr(fine_tuning, "NEEDS", ("torch", "no_such_module"))
     with pytest.raises(InputError, match=r"needs no_such_module.*learning"):
         check_trainable(find_policy("walk_upright-toe-1"))

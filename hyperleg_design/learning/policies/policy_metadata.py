@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from hyperleg_design.simulation.design_observation import RANGES
+
 if TYPE_CHECKING:
     from hyperleg_design.simulation.design_observation import DesignRanges
 
@@ -50,5 +52,5 @@ def policy_metadata(
     metadata |= {"seed": str(description["seed"]), "steps": str(steps)}
     metadata |= {"columns": list(columns), "joints": list(joints)}
     if designs is not None:
-        metadata["design_ranges"] = designs.to_mapping()
+        metadata[RANGES] = designs.to_mapping()
     return metadata

@@ -8,6 +8,9 @@ begin without weight. The critic starts anew, alone for some iterations.
 
 Layers may become wider: the policy then still begins by doing what the old one did.
 
+A policy that is conditioned on its design starts a training of one design: that design is folded
+into its layers (`fold_design`), and into those of its critic.
+
 A finished training writes its critic beside its policy. A training whose critic observes the same
 and has the same layers takes over that critic and the deviation of the actions, and so goes on
 where the first one ended, but for the optimiser's moments and the simulations' states.
@@ -28,10 +31,14 @@ import torch
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.learning.learner.modulation import plain_layers
 from hyperleg_design.learning.policies.export import CRITIC_FORMAT, FORMAT
+from hyperleg_design.learning.policies.fold_design import fold_design
 from hyperleg_design.learning.records.status import CRITIC, POLICY
+from hyperleg_design.simulation.design_observation import RANGES, design_ranges
 
 if TYPE_CHECKING:
     from rsl_rl.models import MLPModel
+
+    from hyperleg_design.robot.described import RobotDesign
 
 SEEN = 200_000
 """Samples that the old normaliser counts for, so that it soon follows the new task; assumed."""
@@ -87,20 +94,39 @@ class StartCritic:
     """Standard deviation of the policy's actions, `(J,)`."""
 
 
-def read_start(path: str | Path) -> StartPolicy:
+def read_start(path: str | Path, design: RobotDesign | None = None) -> StartPolicy:
     """Read a policy that `hyperleg train` exported, and the critic beside it, if any.
 
     Args:
         path: of the ONNX file.
+        design: the one robot that is to be trained, which a conditioned policy needs; None where
+            many are.
 
     Returns:
-        Weights, normaliser and origin of the policy, and those of its critic.
+        Weights, normaliser and origin of the policy, and those of its critic; a conditioned policy
+        as an ordinary one that does the same on the design.
 
     Raises:
-        InputError: missing, truncated, or no such policy or critic.
+        InputError: missing, truncated, or no such policy or critic; or a conditioned policy, for
+            many designs, or for a design outside of its ranges.
     """
     path = Path(path)
-    metadata, network, digest = _read_network(path, FORMAT)
+    metadata, network, digest, modulation = _read_network(path, FORMAT)
+    numbers: dict[str, float] = {}
+    if RANGES in metadata:
+        where = f"{path.parent.name}/{path.name}"
+        if design is None:
+            raise InputError(
+                where,
+                "design",
+                None,
+                "is conditioned on its design, and can start a training of one design only; start "
+                "from a policy of one design",
+            )
+        ranges = design_ranges(json.loads(metadata[RANGES]), f"{where}: {RANGES}")
+        ranges.check_inside(design, where)
+        numbers = dict(zip(ranges.columns, ranges.numbers(design).tolist(), strict=True))
+        network = fold_design(network, modulation, numbers)
     source: dict[str, Any] = {
         key: metadata[key] for key in ("variant", "seed", "steps", "commit") if key in metadata
     }
@@ -108,7 +134,11 @@ def read_start(path: str | Path) -> StartPolicy:
     source |= {"task": task["name"], "sha256": digest}
     critic = None
     if path.name == POLICY and (path.parent / CRITIC).is_file():
-        extra, judged, source["critic_sha256"] = _read_network(path.parent / CRITIC, CRITIC_FORMAT)
+        extra, judged, source["critic_sha256"], modulation = _read_network(
+            path.parent / CRITIC, CRITIC_FORMAT
+        )
+        if numbers:
+            judged = fold_design(judged, modulation, numbers)
         critic = StartCritic(
             **judged, action_deviation=np.array(json.loads(extra["action_deviation"]))
         )
@@ -123,8 +153,12 @@ def read_start(path: str | Path) -> StartPolicy:
     )
 
 
-def _read_network(path: Path, form: str) -> tuple[dict[str, str], dict[str, Any], str]:
-    """Metadata, columns with normaliser and layers, and SHA-256 of an exported network."""
+def _read_network(
+    path: Path, form: str
+) -> tuple[dict[str, str], dict[str, Any], str, dict[int, Any]]:
+    """Metadata, columns with normaliser and layers, SHA-256, and modulation (as `fold_design` takes
+    it) of an exported network.
+    """
     import onnx
     from onnx import numpy_helper
 
@@ -158,13 +192,6 @@ def _read_network(path: Path, form: str) -> tuple[dict[str, str], dict[str, Any]
     layers = sorted(
         int(name.removeprefix("weight_")) for name in arrays if name.startswith("weight_")
     )
-    if form == FORMAT and "design_columns" in arrays:
-        raise InputError(
-            where,
-            "design",
-            None,
-            "is conditioned on its design; start from a policy of one design",
-        )
     columns = tuple(json.loads(metadata["columns"]))
     network = {
         "columns": columns,
@@ -173,7 +200,13 @@ def _read_network(path: Path, form: str) -> tuple[dict[str, str], dict[str, Any]
         "weights": tuple(arrays[f"weight_{i}"] for i in layers),
         "biases": tuple(arrays[f"bias_{i}"] for i in layers),
     }
-    return metadata, network, hashlib.sha256(content).hexdigest()
+    parts = ("scale_weight", "scale_bias", "shift_weight", "shift_bias")
+    modulation = {
+        place: tuple(arrays[f"{part}_{i}"] for part in parts)
+        for place, i in enumerate(layers)
+        if f"scale_weight_{i}" in arrays
+    }
+    return metadata, network, hashlib.sha256(content).hexdigest(), modulation
 
 
 def check_posture(start: StartPolicy, posture: Mapping[str, float]) -> None:

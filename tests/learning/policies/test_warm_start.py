@@ -20,9 +20,18 @@ pytest.importorskip("tensorboard")
 from hyperleg_design.learning.learner.algorithm import as_tensors  # noqa: E402
 from hyperleg_design.learning.policies.warm_start import read_start  # noqa: E402
 from hyperleg_design.learning.preset import WarmStart  # noqa: E402
+from hyperleg_design.learning.preset_file import load_preset  # noqa: E402
 from hyperleg_design.learning.train import describe, train  # noqa: E402
 from hyperleg_design.learning.training import Training  # noqa: E402
+from hyperleg_design.robot.described import RobotDesign  # noqa: E402
 from hyperleg_design.robot.design import load_design  # noqa: E402
+from hyperleg_design.robot.load import load_robot  # noqa: E402
+from hyperleg_design.simulation.design_observation import (  # noqa: E402
+    DesignRanges,
+    Range,
+    design_ranges,
+)
+from hyperleg_design.simulation.design_spread import DesignSpread  # noqa: E402
 from hyperleg_design.simulation.tasks import Task, load_task  # noqa: E402
 
 
@@ -220,7 +229,78 @@ def with_goal_paper(tiny: Preset) -> Preset:
     return dataclasses.replace(tiny, tasks={**tiny.tasks, "goal_paper": tiny.tasks["goal"]})
 
 
-def test_a_conditioned_policy_is_no_start_yet() -> None:
-    path = resources.content_folder("sim") / "conditioned/walk_upright-toe-0/policy.onnx"
-    with pytest.raises(InputError, match="conditioned on its design"):
-        read_start(path)
+CONDITIONED = resources.content_folder("sim") / "conditioned/walk_upright-toe-0/policy.onnx"
+HEAVY = ("toe.mass=0.9", "transmission.scale.knee=1.9", "thigh.length=0.42")
+
+
+def observed(policy: Path, design: RobotDesign, size: int) -> tuple[np.ndarray, np.ndarray]:
+    """Random observations without the design, and the same with the numbers of the design."""
+    metadata = {entry.key: entry.value for entry in onnx.load(policy).metadata_props}
+    ranges = design_ranges(json.loads(metadata["design_ranges"]), "")
+    drawn = np.random.default_rng(3).normal(0.0, 1.0, (50, size)).astype(np.float32)
+    numbers = np.broadcast_to(ranges.numbers(design), (50, len(ranges.ranges)))
+    columns = json.loads(metadata["columns"])
+    assert columns[size:] == ranges.columns
+    return drawn, np.hstack([drawn, numbers]).astype(np.float32)
+
+
+def test_a_conditioned_policy_starts_as_it_acts_on_the_design(tmp_path: Path) -> None:
+    design, preset = load_design("toe", overrides=HEAVY), load_preset("designs")
+    start, task = read_start(CONDITIONED, design), load_task("walk_upright")
+    description = {**describe(task, design, 0, preset), "start": start.source}
+    training = Training(task, design, 0, preset, tmp_path, 1, description, start)
+    size = len(training.environment.observation_columns["policy"])
+    without, with_design = observed(CONDITIONED, design, size)
+    (expected,) = ort.InferenceSession(CONDITIONED).run(["action"], {"observation": with_design})
+    found = training.policy(without)
+    np.testing.assert_allclose(found, expected, atol=2e-4 * (1 + np.abs(expected).max()))
+    # and not as it acts on the robot that the ranges were drawn around
+    (other,) = ort.InferenceSession(CONDITIONED).run(
+        ["action"], {"observation": observed(CONDITIONED, load_design("toe"), size)[1]}
+    )
+    assert np.abs(found - other).max() > 0.05
+    training.environment.close()
+
+
+def test_the_critic_of_a_conditioned_training_goes_on(tiny: Preset, tmp_path: Path) -> None:
+    """The critic, too, judges as it did on the design."""
+    spread = DesignSpread(
+        ranges=DesignRanges({"toe.mass": Range(0.1, 0.4), "thigh.length": Range(0.34, 0.4)}),
+        pool=4,
+    )
+    assert train("goal", "toe", 0, tiny, tmp_path / "first", designs=spread)
+    modulated, design = tmp_path / "first" / "policy.onnx", load_design("toe")
+    start = read_start(modulated, design)
+    assert start.critic is not None
+    task = load_task("goal")
+    description = {**describe(task, design, 0, tiny), "start": start.source}
+    training = Training(task, design, 0, tiny, tmp_path / "next", 1, description, start)
+    assert training._critic_only == 0
+    columns = training.environment.observation_columns["critic"]
+    numbers = spread.ranges.numbers(design)
+    drawn = np.random.default_rng(4).normal(0.0, 1.0, (50, len(columns))).astype(np.float32)
+    with_design = np.hstack([drawn, np.tile(numbers, (50, 1))]).astype(np.float32)
+    session = ort.InferenceSession(modulated.parent / "critic.onnx")
+    (expected,) = session.run(["action"], {"observation": with_design})
+    with torch.no_grad():
+        found = training.algorithm.critic(as_tensors({"critic": drawn})).numpy()
+    np.testing.assert_allclose(found, expected, atol=2e-4 * (1 + np.abs(expected).max()))
+    training.environment.close()
+
+
+def test_a_conditioned_policy_starts_one_design_inside_its_ranges(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"conditioned on its design.*one design only"):
+        train("walk_upright", "toe", 0, "designs", tmp_path, start=CONDITIONED, designs="toe")
+    with pytest.raises(InputError, match=r"toe\.mass.*1\.5.*expects 0\.05 \.\. 1"):
+        train(
+            "walk_upright",
+            "toe",
+            0,
+            "designs",
+            tmp_path,
+            overrides=["toe.mass=1.5"],
+            start=CONDITIONED,
+        )
+    with pytest.raises(InputError, match=r"hip_yaw.gear.*mini_cheetah has no such leaf"):
+        read_start(CONDITIONED, load_robot("mini_cheetah"))
+    assert not list(tmp_path.iterdir())
