@@ -99,8 +99,13 @@ def test_a_training_starts_from_a_shipped_one_by_name(capsys, tmp_path: Path, mo
     monkeypatch.setattr("hyperleg_design.cli.policies.require", lambda *names: None)
     monkeypatch.setattr(launch, "run_here", replace_this_process)
     folder = str(tmp_path / "training")
-    assert run(capsys, "train", "--start", "walk_upright-toe-1", "--out", folder)[0] == 0
+    heavy = ("--set", "toe.mass=0.5", "--set", "thigh.length=0.4")
+    assert run(capsys, "train", "--start", "walk_upright-toe-1", *heavy, "--out", folder)[0] == 0
     assert f"--start={find_policy('walk_upright-toe-1')}" in commands[0]
+    assert {"--set=toe.mass=0.5", "--set=thigh.length=0.4"} < set(commands[0])
+    code, _, error = run(capsys, "train", "--set", "toe.mas=0.5", "--out", folder)
+    assert code == 2
+    assert "toe.mas" in error
     code, _, error = run(capsys, "train", "--start", "walk_upright-toe-9", "--out", folder)
     assert code == 2
     assert "--start = 'walk_upright-toe-9': no such file; did you mean walk_upright-toe-" in error

@@ -9,7 +9,23 @@ import pytest
 pytest.importorskip("torch")
 pytest.importorskip("rsl_rl")
 
+from hyperleg_design.learning.__main__ import main
 from hyperleg_design.learning.launch import surroundings
+
+
+def test_changes_of_the_robot_reach_the_training(tmp_path: Path, monkeypatch) -> None:
+    given = {}
+
+    def trained(*positional, **named):
+        given.update(named, design=positional[1])
+        return True
+
+    monkeypatch.setattr("hyperleg_design.learning.train.train", trained)
+    changes = ["--set=toe.mass=0.5", "--set=thigh.length=0.4", "--set-file=lighter.yaml"]
+    assert main([*changes, f"--out={tmp_path}"]) == 0
+    assert given["design"] == "toe"
+    assert given["overrides"] == ["toe.mass=0.5", "thigh.length=0.4"]
+    assert given["overlays"] == ["lighter.yaml"]
 
 
 def test_bad_input_is_one_line_and_status_two(tmp_path: Path) -> None:
