@@ -25,9 +25,6 @@ if TYPE_CHECKING:
 EACH = "{}"
 """In the path of a policy: it stands for the number of the design, one policy a design."""
 COST, SPEED = "cost_of_transport", "steady_speed"
-RATIO_AIM, RANK_AIM, FALLS_AIM = 1.05, 0.8, 0.02
-"""Aims, assumed: cost of transport at most 5 % over the specialist's in the median design, rank
-correlation over designs, and share of trials that fall beyond the specialist's."""
 
 
 @dataclass(frozen=True)
