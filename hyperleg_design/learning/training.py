@@ -95,10 +95,8 @@ class Training:
         self.processor_seconds = 0.0
         """Processor time of the same [s]: the clock that other work on the machine leaves alone."""
         columns = list(self.environment.observation_columns["critic"])
-        self._critic = (
-            start.critic if start and fits_critic(self.algorithm.critic, start, columns) else None
-        )
-        fresh = start is not None and self._critic is None
+        self._takes_critic = bool(start and fits_critic(self.algorithm.critic, start, columns))
+        fresh = start is not None and not self._takes_critic
         self._critic_only = int(preset.warm_start.critic_iterations) if fresh else 0
         if (folder / CHECKPOINT).exists():
             self._load()
@@ -325,8 +323,14 @@ class Training:
             first,
             float(warm.deviation),
         )
-        if self._critic is not None:
-            start_critic(self.algorithm.critic, self.algorithm.actor, self._critic)
+        if self._takes_critic:
+            start_critic(
+                self.algorithm.critic,
+                self.algorithm.actor,
+                start,
+                list(self.environment.observation_columns["critic"]),
+                self.observations["critic"].numpy(),
+            )
 
     def _bootstrap(self, step: Any, reward: torch.Tensor) -> None:
         """An episode that was cut, not lost, goes on in value: add what the critic expects of its

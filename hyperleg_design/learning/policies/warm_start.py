@@ -11,9 +11,10 @@ Layers may become wider: the policy then still begins by doing what the old one 
 A policy that is conditioned on its design starts a training of one design: that design is folded
 into its layers (`fold_design`), and into those of its critic.
 
-A finished training writes its critic beside its policy. A training whose critic observes the same
-and has the same layers takes over that critic and the deviation of the actions, and so goes on
-where the first one ended, but for the optimiser's moments and the simulations' states.
+A finished training writes its critic beside its policy. A training whose critic observes the same,
+or the robot's design besides, and has the same layers takes over that critic and the deviation of
+the actions, and so goes on where the first one ended, but for the optimiser's moments and the
+simulations' states.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ import numpy as np
 import torch
 
 from hyperleg_design.errors import InputError, in_short
+from hyperleg_design.learning.learner.algorithm import DESIGN
 from hyperleg_design.learning.learner.modulation import plain_layers
 from hyperleg_design.learning.policies.export import CRITIC_FORMAT, FORMAT
 from hyperleg_design.learning.policies.fold_design import fold_design
@@ -74,6 +76,8 @@ class StartPolicy:
     of its critic's."""
     critic: StartCritic | None = None
     """Critic of the same training; None where there is none beside the policy."""
+    seen: float = SEEN
+    """Samples that its normaliser counts for at the start."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +154,8 @@ def read_start(path: str | Path, design: RobotDesign | None = None) -> StartPoli
         clock_hidden=task.get("clock", {}).get("shown", 1.0) == 0.0,
         source=source,
         critic=critic,
+        # scaled for many designs; followed soon, those of one would turn a policy that cannot yet
+        seen=max(float(metadata["steps"]), SEEN) if numbers else SEEN,
     )
 
 
@@ -303,7 +309,8 @@ def start_actor(
             (command - start.mean[folded]) / start.deviation[folded]
         )
     layers = [(first, bias), *zip(start.weights[1:], start.biases[1:], strict=True)]
-    _put(actor, [_widened(*pair) for pair in zip(linear, layers, strict=True)], mean, scale)
+    put = [_widened(*pair) for pair in zip(linear, layers, strict=True)]
+    _put(actor, put, mean, scale, start.seen)
     with torch.no_grad():
         actor.distribution.log_std_param.fill_(float(np.log(deviation)))
 
@@ -330,25 +337,41 @@ def fits_critic(critic: MLPModel, start: StartPolicy, columns: list[str]) -> boo
         columns: names of the critic's observation's numbers.
 
     Returns:
-        Whether there is one, of the same observation and layers.
+        Whether there is one, of the same observation, but for the design, and layers.
     """
     old = start.critic
-    if old is None or list(old.columns) != columns:
+    if old is None or list(old.columns) != [c for c in columns if not c.startswith(DESIGN)]:
         return False
     linear = [layer for layer in plain_layers(critic.mlp) if isinstance(layer, torch.nn.Linear)]
-    return [w.shape for w in old.weights] == [tuple(layer.weight.shape) for layer in linear]
+    return [w.shape[0] for w in old.weights] == [layer.out_features for layer in linear]
 
 
-def start_critic(critic: MLPModel, actor: MLPModel, old: StartCritic) -> None:
+def start_critic(
+    critic: MLPModel,
+    actor: MLPModel,
+    start: StartPolicy,
+    columns: list[str],
+    observation: np.ndarray,
+) -> None:
     """Give a critic the weights of the one that judged the policy, and the actor the deviation of
     its actions.
 
     Args:
-        critic: which is changed.
+        critic: which is changed; see `fits_critic`.
         actor: which is changed.
-        old: weights and normaliser of the critic, and the deviation of the actions.
+        start: the policy with its critic.
+        columns: names of the new critic's observation's numbers; those of the design begin without
+            weight.
+        observation: first observations of the new critic `(n, size)`: scale of the design.
     """
-    _put(critic, zip(old.weights, old.biases, strict=True), old.mean, old.deviation)
+    old = start.critic
+    assert old is not None
+    kept = [i for i, name in enumerate(columns) if name in old.columns]
+    mean, scale = np.zeros(len(columns)), np.maximum(observation.std(0), 0.1)
+    first = np.zeros((len(old.biases[0]), len(columns)))
+    first[:, kept], mean[kept], scale[kept] = old.weights[0], old.mean, old.deviation
+    layers = zip([first, *old.weights[1:]], old.biases, strict=True)
+    _put(critic, layers, mean, scale, start.seen)
     with torch.no_grad():
         actor.distribution.log_std_param.copy_(torch.from_numpy(np.log(old.action_deviation)))
 
@@ -358,6 +381,7 @@ def _put(
     layers: Iterable[tuple[np.ndarray, np.ndarray]],
     mean: np.ndarray,
     deviation: np.ndarray,
+    seen: float = SEEN,
 ) -> None:
     """Set weights, biases and normaliser of a network."""
     linear = [layer for layer in plain_layers(network.mlp) if isinstance(layer, torch.nn.Linear)]
@@ -371,4 +395,4 @@ def _put(
             normaliser._mean.copy_(torch.from_numpy(mean)[None])
             normaliser._std.copy_(spread[None])
             normaliser._var.copy_((spread**2)[None])
-            normaliser.count.fill_(SEEN)
+            normaliser.count.fill_(int(seen))
