@@ -366,10 +366,10 @@ def start_critic(
     """
     old = start.critic
     assert old is not None
-    kept = [i for i, name in enumerate(columns) if name in old.columns]
+    shared = [i for i, name in enumerate(columns) if name in old.columns]
     mean, scale = np.zeros(len(columns)), np.maximum(observation.std(0), 0.1)
     first = np.zeros((len(old.biases[0]), len(columns)))
-    first[:, kept], mean[kept], scale[kept] = old.weights[0], old.mean, old.deviation
+    first[:, shared], mean[shared], scale[shared] = old.weights[0], old.mean, old.deviation
     layers = zip([first, *old.weights[1:]], old.biases, strict=True)
     _put(critic, layers, mean, scale, start.seen)
     with torch.no_grad():

@@ -9,6 +9,7 @@ import pytest
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.learning.preset import Preset
 
 torch = pytest.importorskip("torch")
@@ -18,7 +19,7 @@ pytest.importorskip("rsl_rl")
 pytest.importorskip("tensorboard")
 
 from hyperleg_design.learning.learner.algorithm import as_tensors  # noqa: E402
-from hyperleg_design.learning.policies.warm_start import read_start  # noqa: E402
+from hyperleg_design.learning.policies.warm_start import SEEN, read_start  # noqa: E402
 from hyperleg_design.learning.preset import WarmStart  # noqa: E402
 from hyperleg_design.learning.preset_file import load_preset  # noqa: E402
 from hyperleg_design.learning.train import describe, train  # noqa: E402
@@ -286,6 +287,38 @@ def test_the_critic_of_a_conditioned_training_goes_on(tiny: Preset, tmp_path: Pa
         found = training.algorithm.critic(as_tensors({"critic": drawn})).numpy()
     np.testing.assert_allclose(found, expected, atol=2e-4 * (1 + np.abs(expected).max()))
     training.environment.close()
+
+
+def test_a_training_of_many_designs_takes_over_the_critic_of_one(
+    tiny: Preset, tmp_path: Path
+) -> None:
+    """It begins by judging every design as that critic judged its own."""
+    assert train("goal", "toe", 0, tiny, tmp_path / "first")
+    spread = DesignSpread(ranges=DesignRanges({"toe.mass": Range(0.1, 0.4)}), pool=4)
+    start, design = read_start(tmp_path / "first" / "policy.onnx"), load_design("toe")
+    task = load_task("goal").conditioned(spread.ranges)
+    description = {**describe(task, design, 0, tiny), "start": start.source}
+    training = Training(
+        task, design, 0, tiny, tmp_path / "many", 1, description, start, None, spread
+    )
+    assert training._critic_only == 0
+    columns = training.environment.observation_columns["critic"]
+    assert columns[-1] == "design.toe.mass"
+    drawn = np.random.default_rng(5).normal(0.0, 1.0, (50, len(columns))).astype(np.float32)
+    session = ort.InferenceSession(tmp_path / "first" / "critic.onnx")
+    (expected,) = session.run(["action"], {"observation": drawn[:, :-1]})
+    with torch.no_grad():
+        found = training.algorithm.critic(as_tensors({"critic": drawn})).numpy()
+    np.testing.assert_allclose(found, expected, atol=2e-4 * (1 + np.abs(expected).max()))
+    training.environment.close()
+
+
+def test_a_conditioned_policy_keeps_the_scale_of_its_inputs(tmp_path: Path) -> None:
+    """Its normaliser counts for all samples of its training, that of another policy for few."""
+    design = load_design("toe")
+    conditioned = read_start(CONDITIONED, design)
+    assert conditioned.seen == float(conditioned.source["steps"])
+    assert read_start(find_policy("walk_upright-toe-1"), design).seen == SEEN
 
 
 def test_a_conditioned_policy_starts_one_design_inside_its_ranges(tmp_path: Path) -> None:
