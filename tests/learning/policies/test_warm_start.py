@@ -250,6 +250,7 @@ def test_a_conditioned_policy_starts_as_it_acts_on_the_design(tmp_path: Path) ->
     start, task = read_start(CONDITIONED, design), load_task("walk_upright")
     description = {**describe(task, design, 0, preset), "start": start.source}
     training = Training(task, design, 0, preset, tmp_path, 1, description, start)
+    assert training._critic_only == 0  # the shipped critic is taken over
     size = len(training.environment.observation_columns["policy"])
     without, with_design = observed(CONDITIONED, design, size)
     (expected,) = ort.InferenceSession(CONDITIONED).run(["action"], {"observation": with_design})
