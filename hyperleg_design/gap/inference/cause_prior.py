@@ -23,7 +23,8 @@ def log_prior(
 ) -> float:
     """Log prior probability of a set of causes at their values [nat]: each effect is as likely
     as any other, but for one that acts at another place already, at each of its places, or at
-    all of them.
+    all of them. What stands in the references, too, may be as small as a usual error: it is held
+    so that no change takes its place.
     """
     own = rules.cause
     found, place = 0.0, 0
@@ -42,7 +43,7 @@ def log_prior(
             odds.append(
                 WEIGHED[cause.effect].odds(cause.location, evidence.signals[0].subject, values)
                 + min(prior_odds(cause, values), 0.0)
-                + beyond_usual(hypothesis, place, evidence, rules)
+                + (0.0 if cause.standing else beyond_usual(hypothesis, place, evidence, rules))
             )
             place += 1
         found += float(np.mean(odds))

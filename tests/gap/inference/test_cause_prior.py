@@ -15,7 +15,7 @@ RULES = InferenceRules()
 EVIDENCE = SimpleNamespace(signals=[SimpleNamespace(subject=None)], usual={}, references=())
 
 
-def prior(*sizes, location=EVERYWHERE):
+def prior(*sizes, location=EVERYWHERE, standing=False, evidence=EVIDENCE):
     """Of friction of joints, sizes in deviations of their estimates."""
     one = np.ones(1)
     causes = tuple(
@@ -31,13 +31,14 @@ def prior(*sizes, location=EVERYWHERE):
             np.zeros((1, 4)),
             np.zeros(4),
             linear=True,
+            standing=standing,
         )
         for joint, _ in zip(("hip", "knee", "ankle"), sizes, strict=False)
     )
     theta = RULES.posterior.interval * np.array(sizes, float)
     candidate = Candidate("coulomb_friction", location, causes)
     hypothesis = Hypothesis((candidate,), theta, np.eye(len(sizes)), (), 0.0, 0.0)
-    return log_prior(hypothesis, EVIDENCE, RULES, {"coulomb_friction": 3})
+    return log_prior(hypothesis, evidence, RULES, {"coulomb_friction": 3})
 
 
 def test_an_effect_everywhere_acts_the_same_way_everywhere():
@@ -55,6 +56,16 @@ def test_it_is_as_likely_as_that_its_sizes_have_one_sign(sizes):
 
 def test_one_place_has_no_other_to_be_like():
     assert prior(1.0, location="hip") == pytest.approx(prior(-1.0, location="hip"))
+
+
+def test_what_stands_in_the_references_may_be_a_usual_error():
+    """A small error that both sessions have is one, so that no change stands in its place."""
+    usual = {("coulomb_friction", "hip", 0): 1.0}
+    evidence = SimpleNamespace(**{**vars(EVIDENCE), "usual": usual, "references": ("a log",)})
+    own = {"location": "hip", "evidence": evidence}
+    free, small = prior(1.0, location="hip"), RULES.discrepancy.change * RULES.cause.usual
+    assert prior(0.5 * small, standing=True, **own) == pytest.approx(free)
+    assert prior(0.5 * small, **own) < free - np.log(2)
 
 
 @pytest.mark.parametrize(
