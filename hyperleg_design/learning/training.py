@@ -94,7 +94,7 @@ class Training:
         """Spent on training so far, trials left out [s]."""
         self.processor_seconds = 0.0
         """Processor time of the same [s]: the clock that other work on the machine leaves alone."""
-        columns = list(self.environment.observation_columns["critic"])
+        columns = self.environment.observation_columns["critic"]
         self._takes_critic = bool(start and fits_critic(self.algorithm.critic, start, columns))
         fresh = start is not None and not self._takes_critic
         self._critic_only = int(preset.warm_start.critic_iterations) if fresh else 0
@@ -309,18 +309,17 @@ class Training:
         return losses
 
     def _start_from(self, start: StartPolicy) -> None:
-        warm, columns = self.preset.warm_start, list(self.environment.observation_columns["policy"])
+        warm, columns = self.preset.warm_start, self.environment.observation_columns
         check_posture(start, self.task.posture_deg)
         same = start.commands == task_mapping(self.task)["commands"]["kind"]
         command = None if same else np.array([float(warm.forward), 0.0, 0.0])
-        first = self.observations["policy"].numpy()
         start_actor(
             self.algorithm.actor,
             start,
-            columns,
+            columns["policy"],
             list(self.environment.layout.joints),
             command,
-            first,
+            self.observations["policy"].numpy(),
             float(warm.deviation),
         )
         if self._takes_critic:
@@ -328,7 +327,7 @@ class Training:
                 self.algorithm.critic,
                 self.algorithm.actor,
                 start,
-                list(self.environment.observation_columns["critic"]),
+                columns["critic"],
                 self.observations["critic"].numpy(),
             )
 

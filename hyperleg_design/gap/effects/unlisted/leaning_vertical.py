@@ -90,7 +90,7 @@ class LeaningVertical(Effect):
 
     @override
     def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """An angle each way."""
+        """An angle in each of both directions."""
         return dict.fromkeys(self.locations(subject), np.full(len(self.parameters), LEVEL))
 
     @override
