@@ -37,11 +37,10 @@ class Variants(Printing):
         """Evaluate, write and print."""
         from hyperleg_design.evaluation.held_out import check_held_out, judged
         from hyperleg_design.sweep.held_out_tuning import fine_tune_held_out, write_held_out
-        from hyperleg_design.writing import MARKER, check_output_folder, write_text
+        from hyperleg_design.writing import check_output_folder, write_text
 
         policies, first = self.policies, str(judged(self.policies))
         folder = check_output_folder(self.out)
-        write_text(folder / MARKER, "made by hyperleg\n")
         robots = write_held_out(first, self.designs, folder)
         if self.finetune:
             tuned = fine_tune_held_out(

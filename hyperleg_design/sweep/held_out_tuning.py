@@ -13,13 +13,15 @@ from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.simulation.design_spread import load_design_spread
 from hyperleg_design.sweep.fine_tuning import FineTuning, fine_tune, write_design
+from hyperleg_design.writing import MARKER, write_text
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.described import RobotDesign
 
 
 def write_held_out(policy: str | Path, designs: str | Path, out: str | Path) -> list[RobotDesign]:
-    """Write each held-out design as a file that `hyperleg train --design` takes.
+    """Write each held-out design as a file that `hyperleg train --design` takes, and the marker of
+    a folder of this program.
 
     Args:
         policy: whose design the leaves of the spread are changed of: an ONNX file or a shipped
@@ -37,6 +39,7 @@ def write_held_out(policy: str | Path, designs: str | Path, out: str | Path) -> 
     spread = load_design_spread(designs)
     batch = spread.held_out_designs(load_policy(policy).design)
     robots = [batch.take(i) for i in range(spread.held_out)]
+    write_text(Path(out) / MARKER, "made by hyperleg\n")
     for i, robot in enumerate(robots):
         write_design(robot, Path(out) / str(i))
     return robots

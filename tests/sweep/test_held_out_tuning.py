@@ -82,3 +82,9 @@ def test_a_design_outside_the_ranges_is_refused_before_any_training(
     monkeypatch.setattr(fine_tuning, "_started", lambda training: pytest.fail("began"))
     with pytest.raises(InputError, match=r"toe\.mass.*expects 0\.1 \.\. 0\.4"):
         fine_tune_held_out(policy, robots, 64, tmp_path / "out", workers=1, progress=False)
+
+
+def test_nothing_is_written_for_a_policy_that_is_not_there(tmp_path):
+    with pytest.raises(InputError, match="no such file"):
+        write_held_out("walk_upright-toe-99", "toe", tmp_path / "out")
+    assert not (tmp_path / "out").exists()
