@@ -140,7 +140,7 @@ class Campaign(Printing):
 
         if self.action == "pack":
             require("onnx")
-            packed = pack(self.source, self.target, load_campaign(self.file).starts)
+            packed = pack(self.source, self.target, load_campaign(self.file).ship)
             if self.json:
                 emit(packed)
             else:

@@ -21,7 +21,7 @@ import json
 import math
 import re
 import shutil
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -246,7 +246,9 @@ def learning_curve(training: str | Path, rows: int = CURVE_ROWS) -> list[dict[st
     return [_mean(lines[i : i + length]) for i in range(0, len(lines), length)]
 
 
-def pack(source: str | Path, target: str | Path, starts: Collection[str] = ()) -> list[Packed]:
+def pack(
+    source: str | Path, target: str | Path, ship: Mapping[str, str] | None = None
+) -> list[Packed]:
     """Copy all finished trainings of a folder in the form in which they are shipped; each is
     written whole or not at all.
 
@@ -255,8 +257,8 @@ def pack(source: str | Path, target: str | Path, starts: Collection[str] = ()) -
     Args:
         source: folder of trainings, such as `results/campaign`.
         target: such as `sim/policies`.
-        starts: groups of which only the last policy and its critic are copied, because others
-            only start from them.
+        ship: what to copy of a group's trainings: `all` with late policies, the `last` policy
+            and its critic, or `none`. All by default.
 
     Returns:
         One a training of the source, by name.
@@ -268,6 +270,7 @@ def pack(source: str | Path, target: str | Path, starts: Collection[str] = ()) -
     place = Path(source)
     if not place.is_dir():
         raise InputError("pack", "from", str(source), "no such folder")
+    wanted = {} if ship is None else ship
     trainings = sorted(p for p in place.iterdir() if p.is_dir() and _NAME.fullmatch(p.name))
     if not trainings:
         raise InputError(
@@ -278,12 +281,15 @@ def pack(source: str | Path, target: str | Path, starts: Collection[str] = ()) -
         )
     packed = []
     for training in trainings:
+        what = wanted.get(training.name.split("-")[0], "all")
+        if what == "none":
+            continue
         if not (training / POLICY).is_file():
             packed.append(Packed(training.name, 0, 0))
             continue
         policies = [training / POLICY]
         files = [training / POLICY, training / CRITIC, training / RUN]
-        if training.name.split("-")[0] not in starts:
+        if what == "all":
             policies += sorted(training.glob(LATE))
             files += policies[1:]
         with output_folder(Path(target) / training.name) as folder:

@@ -10,7 +10,7 @@ import os
 import subprocess
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -33,10 +33,12 @@ from hyperleg_design.writing import MARKER, check_output_folder, write_text
 
 LOG = "training.log"
 """What a training's process printed, in its folder."""
-STATES = ("done", "shipped", "running", "stopped", "missing")
-FINISHED = ("done", "shipped")
+STATES = ("done", "shipped", "unneeded", "running", "stopped", "missing")
+FINISHED = ("done", "shipped", "unneeded")
 """States in which nothing is left to train; a shipped policy stands in `sim/policies/` with the
-training's name."""
+training's name, and an unneeded one is only the start of others, which are all finished."""
+SHIP = ("all", "last", "none")
+"""What is shipped of a finished training: its last and late policies, its last one, or nothing."""
 POLICIES = "policies"
 """Folder of the shipped policies in `sim/`."""
 
@@ -54,11 +56,18 @@ class Run:
     """Group whose policy of the same design and seed it starts from; empty: from scratch."""
     compared: bool = True
     """Whether its policies are evaluated; those that others only start from are not."""
+    ship: str = "all"
+    """One of `SHIP`."""
 
     @property
     def name(self) -> str:
         """Name of the folder of this training."""
         return f"{self.group}-{self.design}-{self.seed}"
+
+    @property
+    def start_name(self) -> str:
+        """Name of the training that it starts from, if any."""
+        return f"{self.start}-{self.design}-{self.seed}"
 
 
 @dataclass(frozen=True)
@@ -71,9 +80,9 @@ class Campaign:
     runs: tuple[Run, ...]
 
     @property
-    def starts(self) -> frozenset[str]:
-        """Groups whose policies others only start from."""
-        return frozenset(run.group for run in self.runs if not run.compared)
+    def ship(self) -> dict[str, str]:
+        """What is shipped of each group, one of `SHIP`."""
+        return {run.group: run.ship for run in self.runs}
 
 
 def shipped_starts() -> frozenset[str]:
@@ -134,11 +143,14 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
             where,
             f"groups.{g}",
             ("name", "task", "designs", "seeds"),
-            ("start", "preset", "compared"),
+            ("start", "preset", "compared", "ship"),
         )
         compared = group.get("compared", True)
         if not isinstance(compared, bool):
             raise InputError(where, f"groups.{g}.compared", compared, "expects true or false")
+        ship = group.get("ship", "all" if compared else "last")
+        if ship not in SHIP:
+            raise InputError(where, f"groups.{g}.ship", ship, f"expects one of {', '.join(SHIP)}")
         if "-" in str(group["name"]):
             remedy = "expects a name without hyphens: trainings are named group-design-seed"
             raise InputError(where, f"groups.{g}.name", group["name"], remedy)
@@ -174,6 +186,7 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
                     preset,
                     start,
                     compared,
+                    ship,
                 )
                 runs.append((seed, g, d, run))
     # by seed first, so that whatever is done when time is out can be compared
@@ -191,7 +204,22 @@ def campaign_status(campaign: Campaign, out: str | Path) -> list[RunStatus]:
     Returns:
         Statuses, in the campaign's order.
     """
-    return [_status(run, Path(out) / run.name) for run in campaign.runs]
+    statuses: dict[str, RunStatus] = {}
+    following: dict[str, list[RunStatus]] = {}
+    for run in reversed(campaign.runs):  # those that start from a training come after it
+        status = _status(run, Path(out) / run.name)
+        others = following.get(run.name, [])
+        if (
+            not run.compared
+            and status.state in ("stopped", "missing")
+            and others
+            and all(other.state in FINISHED for other in others)
+        ):
+            status = replace(status, state="unneeded")
+        if run.start:
+            following.setdefault(run.start_name, []).append(status)
+        statuses[run.name] = status
+    return [statuses[run.name] for run in campaign.runs]
 
 
 def status_table(statuses: list[RunStatus]) -> str:
@@ -304,9 +332,8 @@ def run_campaign(
 
 def _start_file(run: Run, folder: Path) -> Path:
     """Policy that a training starts from: of the same campaign, else the shipped one."""
-    name = f"{run.start}-{run.design}-{run.seed}"
-    own = folder / name / POLICY
-    return own if own.exists() else shipped_folder() / name / POLICY
+    own = folder / run.start_name / POLICY
+    return own if own.exists() else shipped_folder() / run.start_name / POLICY
 
 
 def _can_start(run: Run, folder: Path) -> bool:

@@ -101,9 +101,11 @@ def test_a_packed_campaign_has_the_same_policies_and_little_else(campaign, tmp_p
     assert shipped.pack(campaign, tmp_path / "packed") == found  # again, over itself
 
 
-def test_of_a_mere_start_the_last_policy_alone_is_packed(campaign, tmp_path):
-    found = shipped.pack(campaign, tmp_path / "packed", starts={"walk_upright"})
-    assert [(p.training, p.policies) for p in found][1] == ("walk_upright-toe-0", 1)
+def test_of_a_group_the_last_policy_alone_is_packed_or_nothing(campaign, tmp_path):
+    ship = {"walk_upright": "last", "t_test": "none"}
+    found = shipped.pack(campaign, tmp_path / "packed", ship)
+    assert (found[0].training, found[0].policies) == ("walk_upright-toe-0", 1)
+    assert not (tmp_path / "packed" / "t_test-toe_removed_matched-11").exists()
     assert not list((tmp_path / "packed" / "walk_upright-toe-0").glob("late_*"))
     assert (tmp_path / "packed" / "walk_upright-toe-0" / "run.json").exists()
 

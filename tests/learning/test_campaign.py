@@ -39,7 +39,7 @@ def nothing_shipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_shipped_campaign_has_the_seeds_that_its_plan_asks_for() -> None:
     campaign, plan = load_campaign(), load_plan()
-    assert campaign.starts == {"walk_guided"}
+    assert campaign.ship == {"walk_guided": "last", "walk_upright": "all"}
     for design in plan.designs:
         seeds = {r.seed for r in campaign.runs if (r.group, r.design) == ("walk_upright", design)}
         assert len(seeds) >= plan.seeds["walk"]
@@ -73,6 +73,7 @@ def test_the_rewards_are_switched_one_at_a_time() -> None:
         ({"processes": 0}, "processes"),
         ({"groups": []}, "groups"),
         ({"groups": [{**DATA["groups"][0], "compared": "no"}]}, "groups.0.compared"),
+        ({"groups": [{**DATA["groups"][0], "ship": "some"}]}, "groups.0.ship"),
         ({"groups": [{"name": "a", "task": "walk", "designs": ["toe"]}]}, "groups.0.seeds"),
         ({"groups": [{"name": "a", "task": "walk", "designs": ["toes"], "seeds": 1}]}, ""),
         ({"groups": [{"name": "a", "task": "swim", "designs": ["toe"], "seeds": 1}]}, ""),
@@ -133,6 +134,31 @@ def test_a_start_is_compared_in_no_shipped_campaign() -> None:
     starts = module.shipped_starts()
     assert starts == {"walk_guided", "t_test_guided"}
     assert all(group.endswith(GUIDED) for group in starts)  # by which evaluation knows them
+
+
+def test_a_start_is_unneeded_once_all_that_start_from_it_are_finished(
+    write, tmp_path: Path
+) -> None:
+    groups = [
+        {"name": "first", "task": "walk", "designs": ["toe"], "seeds": 2, "compared": False},
+        {"name": "second", "task": "walk", "designs": ["toe"], "seeds": 2, "start": "first"},
+        {"name": "third", "task": "walk", "designs": ["toe"], "seeds": 1, "start": "first"},
+        {"name": "alone", "task": "walk", "designs": ["toe"], "seeds": 1, "compared": False},
+    ]
+    campaign = load_campaign(write("c.yaml", yaml.safe_dump({**DATA, "groups": groups})))
+
+    def finish(name: str) -> dict[str, str]:
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "status.json").write_text(json.dumps({"done": True, "steps": 1.0}))
+        (tmp_path / name / "policy.onnx").write_bytes(b"x")
+        return {s.run.name: s.state for s in campaign_status(campaign, tmp_path)}
+
+    assert finish("second-toe-0")["first-toe-0"] == "missing"
+    states = finish("third-toe-0")
+    assert states["first-toe-0"] == "unneeded"
+    assert states["first-toe-1"] == "missing"
+    assert states["alone-toe-0"] == "missing"  # nothing starts from it
+    assert finish("first-toe-0")["first-toe-0"] == "done"
 
 
 def test_foreign_folders_stay(write, tmp_path: Path) -> None:
