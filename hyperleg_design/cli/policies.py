@@ -131,12 +131,9 @@ class Campaign(Printing):
             SystemExit: with code 3, if the campaign was stopped before it was done.
         """
         from hyperleg_design.evaluation.shipped import pack, pack_text
-        from hyperleg_design.learning.campaign import (
-            campaign_status,
-            load_campaign,
-            run_campaign,
-            status_table,
-        )
+        from hyperleg_design.learning.campaigns.campaign import load_campaign
+        from hyperleg_design.learning.campaigns.campaign_status import campaign_status, status_table
+        from hyperleg_design.learning.campaigns.run_campaign import run_campaign
 
         if self.action == "pack":
             require("onnx")

@@ -23,7 +23,7 @@ from hyperleg_design.evaluation.shipped import (
     trainings_text,
 )
 from hyperleg_design.evaluation.versus_paper import VARIANTS
-from hyperleg_design.learning.campaign import load_campaign, shipped_starts
+from hyperleg_design.learning.campaigns.campaign import load_campaign, shipped_starts
 
 if TYPE_CHECKING:
     import pandas as pd
