@@ -25,10 +25,10 @@ from hyperleg_design.robot.design import Design
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import JOINTS
 from hyperleg_design.sizing.envelope import motor_envelope
-from hyperleg_design.sweep import measures
-from hyperleg_design.sweep.definition import Sweep
-from hyperleg_design.sweep.evaluate import evaluate_samples
+from hyperleg_design.sweep.measuring import measures
+from hyperleg_design.sweep.measuring.evaluate import evaluate_samples
 from hyperleg_design.sweep.space import sweep_from_mapping
+from hyperleg_design.sweep.spaces.definition import Sweep
 
 TARGET_RATIO, TARGET_MEMORY = 200.0, 4.0
 LOOP_DESIGNS, BATCH, REPEATS = 15, 4096, 7

@@ -13,8 +13,8 @@ import tyro
 from hyperleg_design import __version__, resources
 from hyperleg_design.cli.arguments import AtLeast
 from hyperleg_design.cli.output import Printing, emit
-from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.load import load_robot
+from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -263,8 +263,8 @@ class Sweep(Printing):
         from hyperleg_design.sweep.jobs import cluster
         from hyperleg_design.sweep.run import run_sweep
         from hyperleg_design.sweep.space import load_sweep
-        from hyperleg_design.sweep.trial_plan import plan
         from hyperleg_design.sweep.trial_runs import run_trials
+        from hyperleg_design.sweep.trials.trial_plan import plan
 
         sweep, show = load_sweep(self.file), not self.json
         protocols = self.evaluate or sweep.evaluated

@@ -14,8 +14,8 @@ from hyperleg_design.cli.output import Printing, emit, require
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.shipped import find_policy
-from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.load import changed_robot, load_robot
+from hyperleg_design.robot.parameters.described import RobotDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.simulation.alteration import Alterations

@@ -57,7 +57,7 @@ class Search(Printing):
         from hyperleg_design.sweep.jobs import cluster
         from hyperleg_design.sweep.search import found_designs, run_search, search_of
         from hyperleg_design.sweep.space import load_sweep
-        from hyperleg_design.sweep.trial_plan import plan
+        from hyperleg_design.sweep.trials.trial_plan import plan
 
         sweep = load_sweep(self.file)
         protocols = self.evaluate or sweep.evaluated

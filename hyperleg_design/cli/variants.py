@@ -36,7 +36,7 @@ class Variants(Printing):
     def run(self) -> None:
         """Evaluate, write and print."""
         from hyperleg_design.evaluation.held_out import check_held_out, judged
-        from hyperleg_design.sweep.held_out_tuning import fine_tune_held_out, write_held_out
+        from hyperleg_design.sweep.tunings.held_out_tuning import fine_tune_held_out, write_held_out
         from hyperleg_design.writing import check_output_folder, write_text
 
         policies, first = self.policies, str(judged(self.policies))

@@ -24,7 +24,7 @@ from hyperleg_design.simulation.layout import layout_of
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.rollout import Trial
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 @dataclass(frozen=True)

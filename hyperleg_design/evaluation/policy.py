@@ -35,7 +35,7 @@ from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.tasks import task_from_mapping
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.tasks import Task
 

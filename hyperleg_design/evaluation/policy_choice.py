@@ -17,7 +17,7 @@ from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.simulation.model import simulation_spec
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 PREFERRED = {"walk": ("walk_upright", "walk"), "t_test": ("t_test_free", "t_test")}
 """Groups whose policies stand for a kind of protocol, the best first; other groups of that name's

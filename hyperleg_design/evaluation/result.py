@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from hyperleg_design.evaluation.motion.motor_use import MotorUse
     from hyperleg_design.evaluation.motion.power import CyclePower
     from hyperleg_design.evaluation.rollout import Trial
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 ORIGIN = ("command", "commit", "versions", "deviations")

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from hyperleg_design.evaluation.statistics import Estimate
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 PUSH_INTERVAL = 2.0
 """Mean time between pushes [s]; assumed."""

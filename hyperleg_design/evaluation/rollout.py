@@ -27,7 +27,7 @@ from hyperleg_design.simulation.terms import terminations
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.layout import Layout
     from hyperleg_design.simulation.stepping.chunk import Chunk

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from hyperleg_design.evaluation.policy import OnnxPolicy, Policy
-from hyperleg_design.robot.dimensions import limb_mass, total_mass
+from hyperleg_design.robot.kinematics.dimensions import limb_mass, total_mass
 from hyperleg_design.robot.parameters.values import leaves
 from hyperleg_design.simulation.design_observation import RANGES, design_ranges
 from hyperleg_design.simulation.drives.actuation import actuation_model
 from hyperleg_design.simulation.drives.machine import rotor_inertia
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 SPECIALIST, CONDITIONED, ZERO_SHOT, UNKNOWN = "specialist", "conditioned", "zero-shot", "unknown"
 _NO_ROBOT = ("masses.expected_",)

@@ -37,8 +37,8 @@ from hyperleg_design.learning.records.status import (
 )
 from hyperleg_design.learning.resolved import preset_mapping, task_mapping
 from hyperleg_design.learning.training import Training
-from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.load import changed_robot, load_robot
+from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.simulation.alteration import Alterations
 from hyperleg_design.simulation.design_spread import DesignSpread, load_design_spread
 from hyperleg_design.simulation.layout import layout_of

@@ -38,7 +38,7 @@ from hyperleg_design.learning.records.trial import trial
 from hyperleg_design.learning.resolved import task_mapping
 from hyperleg_design.learning.schedule import Schedule
 from hyperleg_design.learning.stop_requests import stop_requests
-from hyperleg_design.robot.described import RobotDesign
+from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.simulation.alteration import Alterations
 from hyperleg_design.simulation.design_spread import DesignSpread
 from hyperleg_design.simulation.environment import Environment

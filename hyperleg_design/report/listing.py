@@ -9,10 +9,10 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.report.text import table
 from hyperleg_design.robot.ablation import DESCRIPTION
-from hyperleg_design.robot.described import RobotDesign
-from hyperleg_design.robot.dimensions import total_mass
+from hyperleg_design.robot.kinematics.dimensions import total_mass
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.motors import catalogue
+from hyperleg_design.robot.parameters.described import RobotDesign
 
 KINDS = (
     "designs",

@@ -10,7 +10,7 @@ from hyperleg_design.robot import masses, transmission
 from hyperleg_design.robot.names import JOINTS, LAYOUTS, PASSIVE, VARIANTS
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.hyperleg import HyperLeg
+    from hyperleg_design.robot.parameters.hyperleg import HyperLeg
 
 Biped = TypeVar("Biped", bound="HyperLeg")
 

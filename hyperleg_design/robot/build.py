@@ -13,16 +13,16 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from hyperleg_design import provenance, resources
-from hyperleg_design.robot import dimensions
 from hyperleg_design.robot.description import TEMPLATE, tree_yaml, urdf
+from hyperleg_design.robot.kinematics import dimensions
+from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.mass.mass_rows import MassRow, mass_rows
 from hyperleg_design.robot.mjcf import mjcf
-from hyperleg_design.robot.tree import build_tree
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.writing import output_folder, write_bytes, write_json
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 COLUMNS = (
     "kind",

@@ -26,7 +26,7 @@ from hyperleg_design.robot.trees.rod_range import RodRange, rod_ranges
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 KINDS = ("design", "motor", "urdf", "mjcf")
 XML = (".urdf", ".xml", ".mjcf")

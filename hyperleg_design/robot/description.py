@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from hyperleg_design import resources
-from hyperleg_design.robot.kinematic_tree import Link, Shape, Tree, TreeJoint
-from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.kinematics.kinematic_tree import Link, Shape, Tree, TreeJoint
+from hyperleg_design.robot.kinematics.tree import build_tree
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 TEMPLATE = "robot.urdf.xacro"
 TEMPLATE_DIGEST = "86c812895368fa181a629bcaa213c80951626200cfe293d450b733bea4a3034b"

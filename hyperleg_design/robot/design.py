@@ -20,11 +20,11 @@ from hyperleg_design.errors import InputError, meant
 from hyperleg_design.reading import parse_yaml, read_yaml, short_name
 from hyperleg_design.robot.ablation import ablate, states
 from hyperleg_design.robot.checks.consistency import check_design
-from hyperleg_design.robot.hyperleg import SPRING_LEAVES, HyperLeg
 from hyperleg_design.robot.masses import check_printed, lapsed
 from hyperleg_design.robot.names import LAYOUTS, PASSIVE
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.hyperleg import SPRING_LEAVES, HyperLeg
 from hyperleg_design.robot.parameters.motor_paths import with_motor_paths
 from hyperleg_design.robot.parameters.values import Origin
 

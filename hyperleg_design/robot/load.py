@@ -11,7 +11,6 @@ from typing import Any, cast
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.design import (
     Design,
     base_file,
@@ -21,6 +20,7 @@ from hyperleg_design.robot.design import (
     load_design,
     parse_overrides,
 )
+from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.robot.parameters.motor_paths import with_motor_paths
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_load import FAMILY, tree_design_from_mapping

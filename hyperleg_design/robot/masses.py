@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import gear
-from hyperleg_design.robot.laws import Laws
+from hyperleg_design.robot.laws import gear
+from hyperleg_design.robot.laws.laws import Laws
 from hyperleg_design.robot.mass.actuator import actuator_mass
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SEGMENTS
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.hyperleg import HyperLeg
+    from hyperleg_design.robot.parameters.hyperleg import HyperLeg
 
 _REFERENCE_PART = {
     "hip_yaw": "hip",

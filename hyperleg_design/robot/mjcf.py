@@ -18,17 +18,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.robot import description, transmission
-from hyperleg_design.robot.described import prefixed
-from hyperleg_design.robot.dimensions import standing_height
-from hyperleg_design.robot.gear import rotor_inertia
-from hyperleg_design.robot.hyperleg import HyperLeg
+from hyperleg_design.robot.kinematics.dimensions import standing_height
+from hyperleg_design.robot.kinematics.tree import Tree, build_tree
+from hyperleg_design.robot.laws.gear import rotor_inertia
 from hyperleg_design.robot.motors import motor_arrays
-from hyperleg_design.robot.tree import Tree, build_tree
+from hyperleg_design.robot.parameters.described import prefixed
+from hyperleg_design.robot.parameters.hyperleg import HyperLeg
 
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 TIME_STEP = 0.005
 """Simulation step [s]: 200 Hz (paper, Table II)."""

@@ -14,17 +14,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.robot import description, transmission
-from hyperleg_design.robot.dimensions import standing_height
-from hyperleg_design.robot.gear import rotor_inertia
-from hyperleg_design.robot.kinematic_tree import Tree
-from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.kinematics.dimensions import standing_height
+from hyperleg_design.robot.kinematics.kinematic_tree import Tree
+from hyperleg_design.robot.kinematics.tree import build_tree
+from hyperleg_design.robot.laws.gear import rotor_inertia
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_limb import turned
 
 if TYPE_CHECKING:
     import pinocchio
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 @dataclass(frozen=True, eq=False)

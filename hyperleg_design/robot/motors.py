@@ -20,8 +20,8 @@ from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, MOTORS
 from hyperleg_design.robot.parameters import values as parameters
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
-    from hyperleg_design.robot.hyperleg import HyperLeg
+    from hyperleg_design.robot.parameters.described import RobotDesign
+    from hyperleg_design.robot.parameters.hyperleg import HyperLeg
 
 FOLDERS = "HYPERLEG_MOTORS"
 """Environment variable with folders of motors beside the shipped ones, separated like `PATH`."""

@@ -25,8 +25,8 @@ from hyperleg_design.robot.trees import limb_actuation, tree_limb
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
-    from hyperleg_design.robot.hyperleg import HyperLeg
+    from hyperleg_design.robot.parameters.described import RobotDesign
+    from hyperleg_design.robot.parameters.hyperleg import HyperLeg
 
 HIP = slice(0, 3)
 KNEE, ANKLE_PITCH, ANKLE_ROLL, TOE = 3, 4, 5, 6

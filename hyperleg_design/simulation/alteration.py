@@ -26,7 +26,7 @@ from hyperleg_design.simulation.drives.machine import Machine
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 @dataclass(slots=True, eq=False)

@@ -17,7 +17,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters import values as parameters
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 RANGES = "design_ranges"
 """Metadata of a policy that is conditioned on its design: its ranges."""

@@ -19,7 +19,7 @@ from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 TRIES = 4
 """Designs that are drawn for each that is needed before drawing is given up: some ranges have

@@ -37,7 +37,7 @@ from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.simulation.layout import Layout
 
 DIVERGENCES_KEPT = 100

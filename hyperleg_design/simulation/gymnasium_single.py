@@ -18,8 +18,8 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.load import load_robot
+from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.gymnasium_vector import ACTION_BOUND, GymnasiumVector
 from hyperleg_design.simulation.tasks import Task, load_task

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.mjcf import mujoco_model
-from hyperleg_design.robot.tree import build_tree
 from hyperleg_design.sizing.envelope import motor_envelope
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 FILE = "isaac_actuators.json"
 """Name of the file that `hyperleg build --for isaac` writes."""

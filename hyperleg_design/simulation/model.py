@@ -23,7 +23,7 @@ from hyperleg_design.simulation.settings import Physics
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 KEPT = 1024
 """Models that a process keeps with their layouts, some 0.1 MB each."""

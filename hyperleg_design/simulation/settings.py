@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot.friction import FRICTION_SPEED
+from hyperleg_design.robot.laws.friction import FRICTION_SPEED
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.fields import flag, number, text
 

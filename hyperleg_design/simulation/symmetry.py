@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.robot.posture import Pose, link_poses
+from hyperleg_design.robot.kinematics.posture import Pose, link_poses
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.kinematic_tree import Tree, TreeJoint
+    from hyperleg_design.robot.kinematics.kinematic_tree import Tree, TreeJoint
 
 PLACE = 2e-3
 """How far from its mirror image a joint may stand [m]; CAD models are not exact."""

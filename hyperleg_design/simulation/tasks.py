@@ -36,7 +36,7 @@ from hyperleg_design.simulation.terms.rewards import TERMS
 from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.simulation.layout import Layout
 
 GROUPS = ("policy", "critic")

@@ -25,14 +25,14 @@ from typing_extensions import override
 
 from hyperleg_design.errors import InputError, meant
 from hyperleg_design.robot.ablation import states
-from hyperleg_design.robot.hyperleg import HyperLeg
 from hyperleg_design.robot.names import LAYOUTS, SIDES
+from hyperleg_design.robot.parameters.hyperleg import HyperLeg
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 from hyperleg_design.simulation.drives.actuation import motor_from_joint
 from hyperleg_design.simulation.drives.machine import Machine
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 LOCK = 1e5
 """Damping that holds a locked toe [Nms/rad]; assumed, see the module."""

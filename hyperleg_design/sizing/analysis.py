@@ -21,8 +21,8 @@ from hyperleg_design.sizing.envelope import motor_envelope
 from hyperleg_design.sizing.tree_analysis import analyze_tree
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 SCHEMA = 1
 """Version of the object that `analyze` returns."""

@@ -43,8 +43,8 @@ from hyperleg_design.sizing.motions.foot_path import rolling
 from hyperleg_design.sizing.motions.motion import GRAVITY
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 DIRECTIONS: Mapping[str, np.ndarray] = {
     "vertical": np.array([0.0, 0.0, 1.0]),

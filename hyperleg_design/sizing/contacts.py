@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.robot.tree import Tree
+from hyperleg_design.robot.kinematics.tree import Tree
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.models import RigidBodyModel

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot import friction
-from hyperleg_design.robot.friction import FRICTION_SPEED
+from hyperleg_design.robot.laws import friction
+from hyperleg_design.robot.laws.friction import FRICTION_SPEED
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.transmission import (
     joint_from_motor,

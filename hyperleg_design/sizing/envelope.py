@@ -23,7 +23,7 @@ from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.transmission import motor_names
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 BRAKING, IDLE, DRIVING = -1, 0, 1
 """What `quadrant` returns: the motor takes power from the joint, exchanges none, gives power to

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
+from hyperleg_design.robot.kinematics.tree import SIGN
 from hyperleg_design.robot.names import JOINTS
 from hyperleg_design.robot.transmission import joint_names
-from hyperleg_design.robot.tree import SIGN
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design

@@ -10,7 +10,7 @@ import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.dimensions import limb_mass, standing_height, total_mass
+from hyperleg_design.robot.kinematics.dimensions import limb_mass, standing_height, total_mass
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.trees import limb_masses, tree_limb

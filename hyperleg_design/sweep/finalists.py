@@ -19,20 +19,20 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.protocol import MOST_TRIALS, Protocol, protocol_mapping
-from hyperleg_design.sweep.fine_tuning import FineTuning, check_trainable, fine_tune
 from hyperleg_design.sweep.pareto import nondominated
-from hyperleg_design.sweep.plain_values import plain_values
 from hyperleg_design.sweep.search import ROW, Search
-from hyperleg_design.sweep.trial_plan import kind_of
+from hyperleg_design.sweep.searching.plain_values import plain_values
 from hyperleg_design.sweep.trial_runs import evaluate_values
 from hyperleg_design.sweep.trial_table import design_table
+from hyperleg_design.sweep.trials.trial_plan import kind_of
+from hyperleg_design.sweep.tunings.fine_tuning import FineTuning, check_trainable, fine_tune
 from hyperleg_design.writing import write_json
 
 if TYPE_CHECKING:
     import optuna
     import pandas as pd
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 FINALISTS = 3
 """Number of finalists by default."""

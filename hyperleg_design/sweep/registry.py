@@ -15,8 +15,8 @@ from functools import cache
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import measures as trial_measures
 from hyperleg_design.robot.parameters import values as parameters
-from hyperleg_design.sweep import measures as sizing
-from hyperleg_design.sweep.measure import MEASURES, TREE
+from hyperleg_design.sweep.measuring import measures as sizing
+from hyperleg_design.sweep.measuring.measure import MEASURES, TREE
 
 PROTOCOLS = {"walk": trial_measures.WALK, "t_test": trial_measures.T_TEST}
 """Measures of trials by protocol."""

@@ -24,9 +24,9 @@ from typing import Any
 from hyperleg_design import provenance
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.sweep import table
-from hyperleg_design.sweep.definition import Sweep
-from hyperleg_design.sweep.evaluate import Columns, evaluate_range
+from hyperleg_design.sweep.measuring.evaluate import Columns, evaluate_range
 from hyperleg_design.sweep.space import load_sweep
+from hyperleg_design.sweep.spaces.definition import Sweep
 from hyperleg_design.sweep.summary import summarise
 from hyperleg_design.writing import (
     MARKER,

@@ -23,14 +23,17 @@ import numpy as np
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.protocol import protocol_mapping
 from hyperleg_design.robot.parameters import values as parameters
-from hyperleg_design.sweep import measures, registry
-from hyperleg_design.sweep.constraint import Constraint, read_constraint, usual_constraints
-from hyperleg_design.sweep.definition import Sweep
-from hyperleg_design.sweep.evaluate import evaluate_samples
+from hyperleg_design.sweep import registry
 from hyperleg_design.sweep.jobs import completed
-from hyperleg_design.sweep.plain_values import plain_values
-from hyperleg_design.sweep.space import with_columns
-from hyperleg_design.sweep.study_database import (
+from hyperleg_design.sweep.measuring import measures
+from hyperleg_design.sweep.measuring.evaluate import evaluate_samples
+from hyperleg_design.sweep.searching.constraint import (
+    Constraint,
+    read_constraint,
+    usual_constraints,
+)
+from hyperleg_design.sweep.searching.plain_values import plain_values
+from hyperleg_design.sweep.searching.study_database import (
     DATABASE,
     OWN,
     clear_errors,
@@ -38,9 +41,11 @@ from hyperleg_design.sweep.study_database import (
     owner_of,
     take_up,
 )
-from hyperleg_design.sweep.trial_plan import Plan, kind_of
+from hyperleg_design.sweep.space import with_columns
+from hyperleg_design.sweep.spaces.definition import Sweep
 from hyperleg_design.sweep.trial_runs import BATCH, evaluate_values
 from hyperleg_design.sweep.trial_table import design_table
+from hyperleg_design.sweep.trials.trial_plan import Plan, kind_of
 
 if TYPE_CHECKING:
     import optuna

@@ -26,17 +26,18 @@ from typing import Any
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
-from hyperleg_design.robot.described import RobotDesign
 from hyperleg_design.robot.design import SPRING, Design
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.names import LAYOUTS, PASSIVE
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.robot.parameters.entries import check_keys
 from hyperleg_design.robot.parameters.motor_paths import path_from_here
-from hyperleg_design.sweep import measures, registry
-from hyperleg_design.sweep.axis import Axis, read_axis
-from hyperleg_design.sweep.definition import AS_DESCRIBED, Map, Sweep
-from hyperleg_design.sweep.measure import MEASURES
+from hyperleg_design.sweep import registry
+from hyperleg_design.sweep.measuring import measures
+from hyperleg_design.sweep.measuring.measure import MEASURES
+from hyperleg_design.sweep.spaces.axis import Axis, read_axis
+from hyperleg_design.sweep.spaces.definition import AS_DESCRIBED, Map, Sweep
 
 SAMPLINGS = ("grid", "random", "sobol", "latin_hypercube")
 MAX_DESIGNS = 10_000_000

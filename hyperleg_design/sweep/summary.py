@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.sweep import measures, table
-from hyperleg_design.sweep.definition import Sweep
+from hyperleg_design.sweep import table
+from hyperleg_design.sweep.measuring import measures
 from hyperleg_design.sweep.pareto import nondominated
+from hyperleg_design.sweep.spaces.definition import Sweep
 
 _SHOWN_REASONS = 10
 _SHOWN_FRONT = 200

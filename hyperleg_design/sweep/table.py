@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.sweep import measures
-from hyperleg_design.sweep.definition import Sweep
-from hyperleg_design.sweep.evaluate import Columns
+from hyperleg_design.sweep.measuring import measures
+from hyperleg_design.sweep.measuring.evaluate import Columns
+from hyperleg_design.sweep.spaces.definition import Sweep
 
 if TYPE_CHECKING:
     import pyarrow as pa

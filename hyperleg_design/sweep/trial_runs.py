@@ -29,17 +29,17 @@ from hyperleg_design.evaluation.protocol import (
     protocol_mapping,
 )
 from hyperleg_design.robot.motors import motor_arrays
-from hyperleg_design.sweep.definition import Sweep
 from hyperleg_design.sweep.jobs import completed
-from hyperleg_design.sweep.trial_plan import Plan, kind_of
-from hyperleg_design.sweep.trial_plan import plan as plan
+from hyperleg_design.sweep.spaces.definition import Sweep
+from hyperleg_design.sweep.trials.trial_plan import Plan, kind_of
+from hyperleg_design.sweep.trials.trial_plan import plan as plan
 from hyperleg_design.writing import write_bytes, write_json
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from hyperleg_design.evaluation.result import Evaluation
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.sweep.run import SweepResult
 
 TRIALS, CHUNKS, STATE = "trials.parquet", "trial_chunks", "state.json"

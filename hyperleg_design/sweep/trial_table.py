@@ -14,8 +14,8 @@ from hyperleg_design.evaluation.result import counted
 from hyperleg_design.evaluation.statistics import estimate, share
 from hyperleg_design.robot.load import design_argument
 from hyperleg_design.sweep import registry
-from hyperleg_design.sweep.definition import AS_DESCRIBED, Sweep
 from hyperleg_design.sweep.pareto import nondominated
+from hyperleg_design.sweep.spaces.definition import AS_DESCRIBED, Sweep
 from hyperleg_design.sweep.trial_runs import REJECTED
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.ablation import DESCRIPTION, ablate, confound, variants
 from hyperleg_design.robot.design import design_from_mapping, load_design
-from hyperleg_design.robot.friction import joint_friction
+from hyperleg_design.robot.laws.friction import joint_friction
 from hyperleg_design.robot.masses import actuator_mass, mass_table
 from hyperleg_design.robot.motors import catalogue
 from hyperleg_design.robot.names import PASSIVE, VARIANTS

@@ -13,8 +13,8 @@ from hyperleg_design.robot import description
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.robot.checks.check_urdf import check_urdf
 from hyperleg_design.robot.description import expanded, tree_mapping, tree_yaml, urdf
+from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.load import load_robot
-from hyperleg_design.robot.tree import build_tree
 
 
 def numbers(element, key: str) -> list[float]:

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot.friction import joint_friction
-from hyperleg_design.robot.gear import rotor_inertia
+from hyperleg_design.robot.kinematics.tree import build_tree
+from hyperleg_design.robot.laws.friction import joint_friction
+from hyperleg_design.robot.laws.gear import rotor_inertia
 from hyperleg_design.robot.load import load_robot, robot_from_mapping
 from hyperleg_design.robot.motors import find_motor, motor_arrays
-from hyperleg_design.robot.tree import build_tree
 
 LAWS = {
     "friction.law": "reflected",

@@ -16,10 +16,10 @@ import pytest
 from hyperleg_design.robot.build import masses_csv, masses_markdown
 from hyperleg_design.robot.description import tree_yaml, urdf
 from hyperleg_design.robot.design import Design, load_design
+from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.mass.mass_rows import mass_rows
 from hyperleg_design.robot.mjcf import mjcf
 from hyperleg_design.robot.names import VARIANTS
-from hyperleg_design.robot.tree import build_tree
 from hyperleg_design.sizing.analysis import analyze
 
 HASHES = Path(__file__).with_name("unchanged_files.json")

@@ -13,8 +13,8 @@ import pinocchio
 import pytest
 import yaml
 
-from hyperleg_design.robot.gear import rotor_inertia
 from hyperleg_design.robot.importing import import_robot
+from hyperleg_design.robot.laws.gear import rotor_inertia
 from hyperleg_design.robot.transmission import joint_from_motor, reflected_inertia
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.layout import layout_of

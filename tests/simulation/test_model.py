@@ -7,10 +7,10 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.robot.description import urdf
-from hyperleg_design.robot.gear import rotor_inertia
+from hyperleg_design.robot.kinematics.tree import build_tree
+from hyperleg_design.robot.laws.gear import rotor_inertia
 from hyperleg_design.robot.load import load_robot, robot_from_mapping
 from hyperleg_design.robot.transmission import joint_from_motor, reflected_inertia
-from hyperleg_design.robot.tree import build_tree
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.model import (
     PAD_SENSOR_SIZE,

@@ -1,8 +1,8 @@
 import pytest
 
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.load import load_robot, robot_from_mapping
-from hyperleg_design.robot.tree import build_tree
 from hyperleg_design.simulation.symmetry import mirrored_joints, mirrored_order
 
 

@@ -16,10 +16,10 @@ from hyperleg_design.sweep.finalists import (
     run_finalists,
     winners,
 )
-from hyperleg_design.sweep.fine_tuning import FineTuning
 from hyperleg_design.sweep.search import Search, run_search, search_of
 from hyperleg_design.sweep.space import sweep_from_mapping
-from hyperleg_design.sweep.trial_plan import plan
+from hyperleg_design.sweep.trials.trial_plan import plan
+from hyperleg_design.sweep.tunings.fine_tuning import FineTuning
 
 optuna = pytest.importorskip("optuna")
 

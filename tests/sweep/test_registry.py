@@ -4,8 +4,9 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import measures as trial_measures
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.sizing.analysis import analyze
-from hyperleg_design.sweep import measure, registry
-from hyperleg_design.sweep import measures as sizing
+from hyperleg_design.sweep import registry
+from hyperleg_design.sweep.measuring import measure
+from hyperleg_design.sweep.measuring import measures as sizing
 
 
 def test_all_that_sweeps_compute_and_evaluate_measures_is_there_under_the_same_name():

@@ -14,7 +14,8 @@ import yaml
 
 from hyperleg_design import provenance, resources
 from hyperleg_design.errors import InputError, OutputError
-from hyperleg_design.sweep import evaluate, run, table
+from hyperleg_design.sweep import run, table
+from hyperleg_design.sweep.measuring import evaluate
 from hyperleg_design.sweep.run import CHUNKS, STATE, run_sweep
 from hyperleg_design.sweep.space import sweep_from_mapping
 

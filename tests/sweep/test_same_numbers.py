@@ -19,13 +19,14 @@ from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.transmission import joint_names
 from hyperleg_design.simulation.settings import Start
 from hyperleg_design.sizing.analysis import analyze
-from hyperleg_design.sweep import measures, registry
-from hyperleg_design.sweep.evaluate import evaluate_range
+from hyperleg_design.sweep import registry
+from hyperleg_design.sweep.measuring import measures
+from hyperleg_design.sweep.measuring.evaluate import evaluate_range
 from hyperleg_design.sweep.search import run_search, search_of
 from hyperleg_design.sweep.space import sweep_from_mapping
-from hyperleg_design.sweep.trial_plan import plan
 from hyperleg_design.sweep.trial_runs import evaluate_values
 from hyperleg_design.sweep.trial_table import design_table
+from hyperleg_design.sweep.trials.trial_plan import plan
 
 NO_MEASURES = {
     "schema",

@@ -12,12 +12,12 @@ from hyperleg_design import cli
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.report.sweep.search_text import final_text
-from hyperleg_design.sweep import measures
 from hyperleg_design.sweep import search as searching
 from hyperleg_design.sweep.finalists import run_finalists
+from hyperleg_design.sweep.measuring import measures
 from hyperleg_design.sweep.search import found_designs, run_search, search_of, trial_frame
 from hyperleg_design.sweep.space import sweep_from_mapping
-from hyperleg_design.sweep.trial_plan import plan
+from hyperleg_design.sweep.trials.trial_plan import plan
 
 optuna = pytest.importorskip("optuna")
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hyperleg_design.sweep import measures
+from hyperleg_design.sweep.measuring import measures
 from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.run import run_sweep
 from hyperleg_design.sweep.space import sweep_from_mapping

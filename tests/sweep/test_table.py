@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.sweep import measures, table
-from hyperleg_design.sweep.evaluate import evaluate_range
+from hyperleg_design.sweep import table
+from hyperleg_design.sweep.measuring import measures
+from hyperleg_design.sweep.measuring.evaluate import evaluate_range
 from hyperleg_design.sweep.space import sweep_from_mapping
 
 SWEEP = sweep_from_mapping(

@@ -11,14 +11,14 @@ from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.report.sweep.trials import evaluated_report
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.dimensions import total_mass
+from hyperleg_design.robot.kinematics.dimensions import total_mass
 from hyperleg_design.robot.load import load_robot
-from hyperleg_design.sweep import measure, measures
+from hyperleg_design.sweep.measuring import measure, measures
 from hyperleg_design.sweep.run import run_sweep
 from hyperleg_design.sweep.space import sweep_from_mapping
-from hyperleg_design.sweep.trial_plan import plan
 from hyperleg_design.sweep.trial_runs import TRIALS, run_trials
 from hyperleg_design.sweep.trial_table import build_command, design_table
+from hyperleg_design.sweep.trials.trial_plan import plan
 
 SHORT = WalkProtocol(trials=2, distance=0.6, time_limit=1.2, steady=Steady(begin=0.3))
 

@@ -15,8 +15,8 @@ from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.sweep import trial_runs
 from hyperleg_design.sweep.run import run_sweep
 from hyperleg_design.sweep.space import sweep_from_mapping
-from hyperleg_design.sweep.trial_plan import plan
 from hyperleg_design.sweep.trial_runs import REJECTED, TRIALS, run_trials
+from hyperleg_design.sweep.trials.trial_plan import plan
 
 SHORT = WalkProtocol(trials=2, distance=0.6, time_limit=0.8, steady=Steady(begin=0.3))
 SWEEP = {

@@ -34,7 +34,7 @@ from hyperleg_design.writing import output_folder, write_text
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.result import Evaluation
     from hyperleg_design.evaluation.rollout import Trial
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.simulation.drives.actuation import ActuationModel
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.layout import Layout

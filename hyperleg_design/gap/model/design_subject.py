@@ -13,12 +13,12 @@ from hyperleg_design.gap.model.assembling import add_rotors, assembled
 from hyperleg_design.gap.model.feet import pads_of
 from hyperleg_design.gap.model.mechanism import mechanism_of
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.described import prefixed
-from hyperleg_design.robot.friction import FRICTION_SPEED
-from hyperleg_design.robot.gear import rotor_inertia
+from hyperleg_design.robot.kinematics.tree import build_tree
+from hyperleg_design.robot.laws.friction import FRICTION_SPEED
+from hyperleg_design.robot.laws.gear import rotor_inertia
 from hyperleg_design.robot.mjcf import mujoco_spec
 from hyperleg_design.robot.motors import find_motor
-from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.parameters.described import prefixed
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.model import simulation_spec
@@ -26,7 +26,7 @@ from hyperleg_design.sizing.envelope import motor_envelope
 
 if TYPE_CHECKING:
     from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 def of_design(design: RobotDesign, path: Path, base: str, known: set[str] | None) -> Subject:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import mujoco
     import pinocchio
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 @dataclass(frozen=True)
@@ -262,8 +262,8 @@ def index_of(name: str, names: Sequence[str], field: str, what: str) -> int:
 
 
 def _least_heat(subject: Subject) -> np.ndarray:
-    from hyperleg_design.robot.described import prefixed
     from hyperleg_design.robot.motors import motor_arrays
+    from hyperleg_design.robot.parameters.described import prefixed
     from hyperleg_design.robot.transmission import motor_names
     from hyperleg_design.simulation.drives.actuation import motor_from_joint
 

@@ -30,7 +30,7 @@ from hyperleg_design.writing import write_text
 if TYPE_CHECKING:
     from hyperleg_design.gap.effects.effect import Change
     from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.simulation.alteration import Alteration
 
 SCHEMA = 1

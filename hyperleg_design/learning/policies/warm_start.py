@@ -40,7 +40,7 @@ from hyperleg_design.simulation.design_observation import RANGES, design_ranges
 if TYPE_CHECKING:
     from rsl_rl.models import MLPModel
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 SEEN = 200_000
 """Samples that the old normaliser counts for, so that it soon follows the new task; assumed."""

@@ -20,7 +20,7 @@ from hyperleg_design.simulation.terms.terminations import COURSE_FINISHED
 from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.simulation.alteration import Alterations
 
 Policy = Callable[[np.ndarray], np.ndarray]

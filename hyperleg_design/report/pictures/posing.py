@@ -10,7 +10,7 @@ import numpy as np
 from hyperleg_design.evaluation.motion.bearing import headings
 from hyperleg_design.report.pictures.picture import Solid
 from hyperleg_design.report.pictures.solids import robot_solids
-from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.kinematics.tree import build_tree
 
 
 class Moving(Protocol):

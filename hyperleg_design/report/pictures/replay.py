@@ -13,7 +13,7 @@ from hyperleg_design.report.pictures.motion import Motion, t_test_motion, walk_m
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.policy import Policy
     from hyperleg_design.evaluation.result import Evaluation
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.simulation.tasks import Task
 
 

@@ -12,8 +12,8 @@ import numpy as np
 from hyperleg_design.report.pictures.picture import Scene, Solid
 from hyperleg_design.report.pictures.solids import robot_solids
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.posture import default_angles, link_poses, lowest_point
-from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.kinematics.posture import default_angles, link_poses, lowest_point
+from hyperleg_design.robot.kinematics.tree import build_tree
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design

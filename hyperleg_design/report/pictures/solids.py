@@ -10,14 +10,14 @@ import numpy as np
 
 from hyperleg_design.report.pictures.picture import Solid
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.described import prefixed
+from hyperleg_design.robot.kinematics.posture import axis_rotation, link_poses, lowest_point
+from hyperleg_design.robot.kinematics.tree import SIGN, Tree, build_tree
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, MOTORS, SIDES
-from hyperleg_design.robot.posture import axis_rotation, link_poses, lowest_point
-from hyperleg_design.robot.tree import SIGN, Tree, build_tree
+from hyperleg_design.robot.parameters.described import prefixed
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 FRAME, DARK, PAD = "#c9cdd4", "#8b93a1", "#2b2d33"

@@ -18,8 +18,8 @@ from hyperleg_design.robot.names import JOINTS
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 AGREES = 1e-3
 """Relative difference up to which a number agrees: what rounding to three or four digits leaves."""

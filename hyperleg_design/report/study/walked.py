@@ -9,8 +9,8 @@ from hyperleg_design.report.page import Heading, Missing, Section
 from hyperleg_design.report.study.context import Made
 from hyperleg_design.report.sweep.trials import evaluated_content
 from hyperleg_design.sweep.run import run_sweep
-from hyperleg_design.sweep.stored import Stored, rerun, stored, stored_names
-from hyperleg_design.sweep.trial_plan import plan
+from hyperleg_design.sweep.trials.stored import Stored, rerun, stored, stored_names
+from hyperleg_design.sweep.trials.trial_plan import plan
 
 if TYPE_CHECKING:
     from hyperleg_design.report.study.context import Context

@@ -12,11 +12,11 @@ import numpy as np
 from hyperleg_design.report.page import Explorer
 from hyperleg_design.report.style import variant_colour
 from hyperleg_design.report.sweep.rows import base_level, base_value, thinned
-from hyperleg_design.robot.described import RobotDesign
-from hyperleg_design.robot.posture import default_angles, link_poses, lowest_point
-from hyperleg_design.robot.tree import build_tree
-from hyperleg_design.sweep.axis import Axis
-from hyperleg_design.sweep.definition import Map, Sweep
+from hyperleg_design.robot.kinematics.posture import default_angles, link_poses, lowest_point
+from hyperleg_design.robot.kinematics.tree import build_tree
+from hyperleg_design.robot.parameters.described import RobotDesign
+from hyperleg_design.sweep.spaces.axis import Axis
+from hyperleg_design.sweep.spaces.definition import Map, Sweep
 
 MOST_POINTS = 1500
 """Designs of a page's explorer; of larger sweeps those of the fronts and maps and an even sample

@@ -9,7 +9,7 @@ import numpy as np
 from hyperleg_design.report.page import Details, Explorer, Page, Section, Table, render
 from hyperleg_design.report.sweep.explorer import explorer
 from hyperleg_design.report.sweep.rows import fronts_of
-from hyperleg_design.sweep import measures
+from hyperleg_design.sweep.measuring import measures
 from hyperleg_design.writing import write_text
 
 if TYPE_CHECKING:

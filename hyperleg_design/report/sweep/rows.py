@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.sweep import measures
-from hyperleg_design.sweep.axis import Axis
-from hyperleg_design.sweep.definition import Sweep
-from hyperleg_design.sweep.evaluate import Columns
+from hyperleg_design.sweep.measuring import measures
+from hyperleg_design.sweep.measuring.evaluate import Columns
 from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.run import SweepResult
+from hyperleg_design.sweep.spaces.axis import Axis
+from hyperleg_design.sweep.spaces.definition import Sweep
 
 
 def fronts_of(result: SweepResult) -> tuple[Columns, dict[str, np.ndarray]]:

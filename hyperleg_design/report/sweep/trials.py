@@ -23,7 +23,7 @@ from hyperleg_design.report.sweep.trials_text import (
     with_interval,
 )
 from hyperleg_design.sweep import registry
-from hyperleg_design.sweep.definition import Map, Sweep
+from hyperleg_design.sweep.spaces.definition import Map, Sweep
 from hyperleg_design.sweep.trial_runs import TRIALS
 from hyperleg_design.sweep.trial_table import (
     SHOWN,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.report.text import table as text_table
-from hyperleg_design.sweep.definition import Sweep
+from hyperleg_design.sweep.spaces.definition import Sweep
 from hyperleg_design.sweep.trial_runs import REJECTED
 
 if TYPE_CHECKING:

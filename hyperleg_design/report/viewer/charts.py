@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.described import prefixed
+from hyperleg_design.robot.parameters.described import prefixed
 from hyperleg_design.sizing import slices
 from hyperleg_design.sizing.envelope import motor_envelope, torque_limits
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
 
     from hyperleg_design.report.viewer.walk import RecordedWalk
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 COLOURS = ("#c8602a", "#2f6db3")
 """Of the first and the second design, told apart by colour-blind readers too."""

@@ -11,7 +11,7 @@ from hyperleg_design.robot.trees import limb_masses
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 def masses_text(designs: Mapping[str, RobotDesign]) -> str:

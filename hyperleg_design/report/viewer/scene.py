@@ -9,8 +9,8 @@ import numpy as np
 
 from hyperleg_design.report.pictures.picture import Solid
 from hyperleg_design.report.pictures.solids import link_solids
-from hyperleg_design.robot.posture import Pose, default_angles, link_poses, lowest_point
-from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.kinematics.posture import Pose, default_angles, link_poses, lowest_point
+from hyperleg_design.robot.kinematics.tree import build_tree
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import trimesh
 
     from hyperleg_design.report.viewer.walk import RecordedWalk
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 _FORCE = (44, 122, 75)
 

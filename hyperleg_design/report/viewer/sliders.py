@@ -11,7 +11,7 @@ import numpy as np
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 LOWEST, HIGHEST = 0.5, 2.0
 """Range of the factors [-], that of the shipped sweeps."""

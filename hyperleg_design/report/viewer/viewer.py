@@ -17,14 +17,14 @@ from hyperleg_design.report.viewer.masses import masses_text
 from hyperleg_design.report.viewer.needs import check_installed, check_port
 from hyperleg_design.report.viewer.scene import RobotView
 from hyperleg_design.report.viewer.sliders import HIGHEST, LOWEST, changed, parameters_of
-from hyperleg_design.robot.dimensions import total_mass
-from hyperleg_design.robot.posture import default_angles, link_poses, lowest_point
-from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.kinematics.dimensions import total_mass
+from hyperleg_design.robot.kinematics.posture import default_angles, link_poses, lowest_point
+from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.simulation.layout import GRAVITY
 
 if TYPE_CHECKING:
     from hyperleg_design.report.viewer.walk import RecordedWalk
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 MOST_DESIGNS = 2
 """Side by side."""

@@ -13,14 +13,14 @@ from scipy.spatial.transform import Rotation
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.log import Log, read_log
+from hyperleg_design.robot.kinematics.posture import Pose, link_poses, lowest_point
+from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.models import quaternion_matrix
-from hyperleg_design.robot.posture import Pose, link_poses, lowest_point
-from hyperleg_design.robot.tree import build_tree
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
-    from hyperleg_design.robot.kinematic_tree import Tree
+    from hyperleg_design.robot.kinematics.kinematic_tree import Tree
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 @dataclass(frozen=True, eq=False)

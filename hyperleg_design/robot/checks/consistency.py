@@ -12,7 +12,7 @@ from hyperleg_design.robot import masses, motors, transmission
 from hyperleg_design.robot.names import JOINTS
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.hyperleg import HyperLeg
+    from hyperleg_design.robot.parameters.hyperleg import HyperLeg
 
 
 def check_design(design: HyperLeg) -> None:

@@ -11,7 +11,7 @@ from hyperleg_design.robot import masses
 from hyperleg_design.robot.mass.bodies import Inertial, shifted
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.hyperleg import HyperLeg
+    from hyperleg_design.robot.parameters.hyperleg import HyperLeg
 
 LEG_LINKS = (
     "hip_yaw_carrier",

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.robot.kinematic_tree import Link, mass_of
-from hyperleg_design.robot.posture import Pose, link_poses
-from hyperleg_design.robot.tree import build_tree
+from hyperleg_design.robot.kinematics.kinematic_tree import Link, mass_of
+from hyperleg_design.robot.kinematics.posture import Pose, link_poses
+from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 SEGMENT_LINKS = {
     "pelvis": ("pelvis",),

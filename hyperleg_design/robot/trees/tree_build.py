@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.described import prefixed
-from hyperleg_design.robot.friction import joint_friction
-from hyperleg_design.robot.kinematic_tree import Link, Shape, Tree, TreeJoint
+from hyperleg_design.robot.kinematics.kinematic_tree import Link, Shape, Tree, TreeJoint
+from hyperleg_design.robot.laws.friction import joint_friction
+from hyperleg_design.robot.parameters.described import prefixed
 from hyperleg_design.robot.trees import limb_masses, tree_limb
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 

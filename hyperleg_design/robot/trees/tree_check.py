@@ -12,8 +12,8 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import motors
-from hyperleg_design.robot.friction import joint_friction
-from hyperleg_design.robot.gear import rotor_inertia
+from hyperleg_design.robot.laws.friction import joint_friction
+from hyperleg_design.robot.laws.gear import rotor_inertia
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.trees import limb_actuation, limb_masses
 from hyperleg_design.robot.trees.tree_design import TreeDesign

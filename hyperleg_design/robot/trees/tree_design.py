@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, ClassVar
 
-from hyperleg_design.robot.described import RobotDesign
+from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.robot.parameters.fields import number
 from hyperleg_design.robot.parameters.model_sections import (
     Contact,

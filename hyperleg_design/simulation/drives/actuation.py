@@ -28,12 +28,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.friction import joint_friction
+from hyperleg_design.robot.laws.friction import joint_friction
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 @dataclass(frozen=True, eq=False)

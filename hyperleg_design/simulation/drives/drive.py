@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
     from mujoco.batch import Batch
 
-    from hyperleg_design.robot.described import RobotDesign
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 class Drive:

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.robot import gear, transmission
+from hyperleg_design.robot import transmission
+from hyperleg_design.robot.laws import gear
 from hyperleg_design.robot.motors import gather
 from hyperleg_design.simulation.drives.actuation import ActuationModel, actuation_model
 from hyperleg_design.simulation.layout import layout_of
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 def machine_of(design: RobotDesign) -> Machine:

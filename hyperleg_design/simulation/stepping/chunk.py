@@ -40,7 +40,7 @@ from hyperleg_design.simulation.terms.rewards import TERMS, Robot
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 class Chunk:

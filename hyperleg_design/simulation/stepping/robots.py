@@ -14,7 +14,7 @@ from hyperleg_design.simulation.tasks import Task
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 def robots_of(

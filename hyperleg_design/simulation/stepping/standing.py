@@ -13,7 +13,7 @@ from hyperleg_design.simulation.settings import Limits
 if TYPE_CHECKING:
     import mujoco
 
-    from hyperleg_design.robot.described import RobotDesign
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.simulation.layout import Layout
 
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.robot.kinematics.tree import SIGN
 from hyperleg_design.robot.models import rigid_body_model
-from hyperleg_design.robot.tree import SIGN
 from hyperleg_design.sizing.motions.balance import Series, balanced_states, lifted
 from hyperleg_design.sizing.motions.foot_path import FootPath, Step, foot_path, quintic
 from hyperleg_design.sizing.motions.motion import Motion, check_positive, contact_mask

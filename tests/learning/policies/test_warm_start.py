@@ -24,9 +24,9 @@ from hyperleg_design.learning.preset import WarmStart  # noqa: E402
 from hyperleg_design.learning.preset_file import load_preset  # noqa: E402
 from hyperleg_design.learning.train import describe, train  # noqa: E402
 from hyperleg_design.learning.training import Training  # noqa: E402
-from hyperleg_design.robot.described import RobotDesign  # noqa: E402
 from hyperleg_design.robot.design import load_design  # noqa: E402
 from hyperleg_design.robot.load import load_robot  # noqa: E402
+from hyperleg_design.robot.parameters.described import RobotDesign  # noqa: E402
 from hyperleg_design.simulation.design_observation import (  # noqa: E402
     DesignRanges,
     Range,

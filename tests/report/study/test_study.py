@@ -12,7 +12,7 @@ import pytest
 
 from hyperleg_design.errors import HyperlegError, OutputError
 from hyperleg_design.report.study import study
-from hyperleg_design.sweep.stored import stored_names
+from hyperleg_design.sweep.trials.stored import stored_names
 
 
 @pytest.fixture(scope="module")

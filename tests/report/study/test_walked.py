@@ -7,7 +7,7 @@ from pathlib import Path
 from hyperleg_design.errors import InputError
 from hyperleg_design.report.page import Explorer, Missing
 from hyperleg_design.report.study import walked
-from hyperleg_design.sweep.stored import stored_names
+from hyperleg_design.sweep.trials.stored import stored_names
 
 
 @dataclass

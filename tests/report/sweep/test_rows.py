@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.report.sweep.rows import base_level, base_value, fronts_of, thinned
-from hyperleg_design.sweep.axis import Axis
+from hyperleg_design.sweep.spaces.axis import Axis
 
 
 @given(st.integers(0, 5000), st.integers(2, 200))

@@ -12,8 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from hyperleg_design.report.pictures.picture import Solid
 from hyperleg_design.report.viewer import scene
+from hyperleg_design.robot.kinematics.posture import default_angles, link_poses, lowest_point
 from hyperleg_design.robot.load import load_robot
-from hyperleg_design.robot.posture import default_angles, link_poses, lowest_point
 
 pytest.importorskip("trimesh")
 SIZES = {"box": (0.2, 0.4, 0.6), "cylinder": (0.1, 0.6), "capsule": (0.1, 0.6), "sphere": (0.1,)}

@@ -8,7 +8,7 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.report.viewer.sliders import changed, parameters_of
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.dimensions import limb_mass, standing_height, total_mass
+from hyperleg_design.robot.kinematics.dimensions import limb_mass, standing_height, total_mass
 from hyperleg_design.robot.load import load_robot
 
 

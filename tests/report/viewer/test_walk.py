@@ -9,9 +9,9 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.log import write_log
 from hyperleg_design.gap.logs.recording import log_of_trial
 from hyperleg_design.report.viewer.walk import RecordedWalk, walk_of_file, walk_of_policy
+from hyperleg_design.robot.kinematics.posture import link_poses
+from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.load import load_robot
-from hyperleg_design.robot.posture import link_poses
-from hyperleg_design.robot.tree import build_tree
 
 
 @pytest.fixture(scope="module")

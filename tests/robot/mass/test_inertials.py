@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot.gear import gear_change
+from hyperleg_design.robot.laws.gear import gear_change
 from hyperleg_design.robot.mass.inertials import LEG_LINKS, inertials
 from hyperleg_design.robot.masses import mass_table
 

@@ -11,12 +11,12 @@ from hyperleg_design.robot.build import build
 from hyperleg_design.robot.checks.check_mjcf import check_mjcf
 from hyperleg_design.robot.checks.check_urdf import check_urdf
 from hyperleg_design.robot.description import urdf
-from hyperleg_design.robot.dimensions import total_mass
+from hyperleg_design.robot.kinematics.dimensions import total_mass
+from hyperleg_design.robot.kinematics.posture import link_poses
+from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.mjcf import mjcf, mujoco_model
 from hyperleg_design.robot.models import quaternion_matrix, rigid_body_model
-from hyperleg_design.robot.posture import link_poses
-from hyperleg_design.robot.tree import build_tree
 from tests.robot.tree_files import SHIPPED
 
 

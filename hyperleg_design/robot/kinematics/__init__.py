@@ -1,0 +1,1 @@
+"""The kinematic tree of a robot of any family: links, joints, postures, mass and height."""

@@ -1,0 +1,1 @@
+"""Laws that a design names: friction and gears over motors and reductions."""

@@ -1,0 +1,1 @@
+"""What a search works with: bounds on measures, its database, rows as JSON."""

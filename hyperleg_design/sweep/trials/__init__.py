@@ -1,0 +1,1 @@
+"""Trials of a sweep's designs: which policies run on them, and the trials that are shipped."""

@@ -1,0 +1,84 @@
+"""Which policies run which protocol on the designs of a sweep, and with which seeds."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.policy import load_policy
+from hyperleg_design.evaluation.policy_choice import policies_for
+from hyperleg_design.evaluation.protocol import (
+    Protocol,
+    load_protocol,
+    protocol_mapping,
+)
+from hyperleg_design.evaluation.shipped import Shipped
+from hyperleg_design.sweep.spaces.definition import Sweep
+
+SEEDS = 3
+"""Trainings that are evaluated on each design."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is run on the designs of a sweep."""
+
+    protocols: tuple[Protocol, ...]
+    policies: dict[tuple[str, str], list[Shipped]]
+    """Policies by protocol and variant."""
+    digest: str
+    """SHA-256 of the protocols and of the policies' contents."""
+
+
+def plan(
+    sweep: Sweep,
+    protocols: Sequence[str | Path | Protocol],
+    *,
+    seeds: int = SEEDS,
+    policies: str | Path | None = None,
+) -> Plan:
+    """Choose protocols and policies of an evaluated sweep.
+
+    Args:
+        sweep: the definition.
+        protocols: shipped names, files, or protocols; the kind decides which policies run them.
+        seeds: trainings of each variant, at most.
+        policies: folder of trainings; the shipped ones by default.
+
+    Returns:
+        The plan.
+
+    Raises:
+        InputError: no such protocol, or no policy for the robot or a variant of it.
+    """
+    run = tuple(p if isinstance(p, Protocol) else load_protocol(p) for p in protocols)
+    if len({kind_of(p) for p in run}) < len(run):
+        raise InputError("evaluate", "", list(map(str, protocols)), "expects one of each kind")
+    robots = {variant: sweep.made(sweep.base, variant) for variant in sweep.variants} if run else {}
+    chosen = {
+        (kind_of(protocol), variant): policies_for(kind_of(protocol), robot, seeds, policies)
+        for protocol in run
+        for variant, robot in robots.items()
+    }
+    digest = hashlib.sha256(json.dumps([protocol_mapping(p) for p in run], sort_keys=True).encode())
+    for (kind, variant), files in chosen.items():
+        for file in files:
+            load_policy(file.path)  # a broken file is told before hours of work
+            digest.update(f"{kind} {variant} {file.name}".encode() + file.path.read_bytes())
+    return Plan(run, chosen, digest.hexdigest())
+
+
+def kind_of(protocol: Protocol) -> str:
+    """Name the kind of a protocol.
+
+    Args:
+        protocol: the protocol.
+
+    Returns:
+        `walk` or `t_test`.
+    """
+    return str(protocol_mapping(protocol)["kind"])
