@@ -19,7 +19,8 @@ from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.fields import number
-from hyperleg_design.simulation.settings import Checked, Randomisation, Start
+from hyperleg_design.robot.parameters.values import Checked
+from hyperleg_design.simulation.settings import Randomisation, Start
 
 MOST_TRIALS = 4096
 T_TEST_POINTS = {"A": (0.0, 0.0), "B": (9.14, 0.0), "C": (9.14, 4.57), "D": (9.14, -4.57)}

@@ -8,7 +8,7 @@ from typing import Any
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters.fields import flag, number, text
-from hyperleg_design.simulation.settings import Checked
+from hyperleg_design.robot.parameters.values import Checked
 
 BEGINS = ("stage", "assist_gone")
 """When a ramp begins: with its stage, or with the first iteration without assist."""

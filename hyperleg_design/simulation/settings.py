@@ -12,15 +12,8 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.laws.friction import FRICTION_SPEED
-from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.fields import flag, number, text
-
-
-class Checked:
-    """Checks the leaves of a section when it is made."""
-
-    def __post_init__(self) -> None:
-        parameters.check_all(self, type(self).__name__.lower())
+from hyperleg_design.robot.parameters.values import Checked
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters.fields import number
-from hyperleg_design.simulation.settings import Checked
+from hyperleg_design.robot.parameters.values import Checked
 from hyperleg_design.simulation.state import Goal, Motion, to_world, to_yaw_frame
 from hyperleg_design.simulation.stepping.streams import Random, of_rows
 

@@ -22,7 +22,7 @@ from hyperleg_design.robot.parameters.entries import (
     checked_whole_number,
 )
 from hyperleg_design.robot.parameters.fields import number, text
-from hyperleg_design.simulation.settings import Checked
+from hyperleg_design.robot.parameters.values import Checked
 
 if TYPE_CHECKING:
     import pandas as pd

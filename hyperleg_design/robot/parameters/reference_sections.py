@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from hyperleg_design.robot.parameters.fields import number, text
-from hyperleg_design.robot.parameters.sections import Checked
+from hyperleg_design.robot.parameters.values import Checked
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

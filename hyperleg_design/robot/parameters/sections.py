@@ -5,15 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.fields import flag, number, text
-
-
-class Checked:
-    """Checks the leaves of a section when it is made."""
-
-    def __post_init__(self) -> None:
-        parameters.check_all(self, type(self).__name__.lower())
+from hyperleg_design.robot.parameters.values import Checked
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -134,22 +134,18 @@ def _checked_number(value: Any, rule: Rule, where: str, path: str) -> Any:
     return array
 
 
-def check_all(instance: Any, where: str, path: str = "") -> None:
-    """Check and normalise every leaf of a dataclass in place; meant for `__post_init__`.
-
-    Args:
-        instance: the dataclass.
-        where: file or option, for error messages.
-        path: dotted path of the instance in that file.
+class Checked:
+    """A dataclass whose leaves are checked and normalised when one is made; errors name the class
+    in place of a file.
     """
-    for field in dataclasses.fields(instance):
-        if is_leaf(field):
-            name = f"{path}.{field.name}" if path else field.name
-            object.__setattr__(
-                instance,
-                field.name,
-                checked(getattr(instance, field.name), rule_of(field), where, name),
-            )
+
+    def __post_init__(self) -> None:
+        section: Any = self
+        for field in dataclasses.fields(section):
+            if is_leaf(field):
+                value = getattr(self, field.name)
+                value = checked(value, rule_of(field), type(self).__name__.lower(), field.name)
+                object.__setattr__(self, field.name, value)
 
 
 def from_mapping(

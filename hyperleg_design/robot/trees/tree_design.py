@@ -27,6 +27,7 @@ from hyperleg_design.robot.parameters.model_sections import (
     StopModel,
 )
 from hyperleg_design.robot.parameters.sections import Electrical
+from hyperleg_design.robot.parameters.values import Checked
 from hyperleg_design.robot.trees.tree_sections import (
     LimbCopy,
     LinkSection,
@@ -165,8 +166,6 @@ def ratios_class(joints: tuple[str, ...]) -> type:
     Returns:
         The dataclass; the same one for the same joints.
     """
-    from hyperleg_design.robot.trees.tree_sections import Checked
-
     leaves = [(joint, Any, number("", -1000, 1000)) for joint in joints]
     return dataclasses.make_dataclass(
         "Ratios", leaves, bases=(Checked,), frozen=True, eq=False, kw_only=True

@@ -12,19 +12,16 @@ from hypothesis import strategies as st
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.fields import Rule, flag, number, text
-from hyperleg_design.robot.parameters.values import Origin, checked
+from hyperleg_design.robot.parameters.values import Checked, Origin, checked
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Part:
+class Part(Checked):
     length: Any = number("m", 0, 2)
     com: Any = number("m", -1, 1, size=3, default=(0.0, 0.0, 0.1))
     kind: Any = text("long", "short", default="long")
     motor: Any = text(default="A", varies=True)
     there: Any = flag(default=True)
-
-    def __post_init__(self) -> None:
-        parameters.check_all(self, "part")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
