@@ -35,25 +35,31 @@ class Variants(Printing):
 
     def run(self) -> None:
         """Evaluate, write and print."""
-        from hyperleg_design.evaluation.held_out import check_held_out, judged
+        from hyperleg_design.evaluation.held_out import check_held_out, held_out_designs
         from hyperleg_design.sweep.tunings.held_out_tuning import fine_tune_held_out, write_held_out
         from hyperleg_design.writing import check_output_folder, write_text
 
-        policies, first = self.policies, str(judged(self.policies))
         folder = check_output_folder(self.out)
-        robots = write_held_out(first, self.designs, folder)
+        policies, designs = self.policies, held_out_designs(self.policies, self.designs)
+        write_held_out(designs.robots, folder)
         if self.finetune:
+            first, *others = policies
             tuned = fine_tune_held_out(
-                first, robots, self.finetune, self.out, workers=self.workers, progress=not self.json
+                first,
+                designs.robots,
+                self.finetune,
+                folder,
+                workers=self.workers,
+                progress=not self.json,
             )
-            policies = (first, tuned, *policies[1:])
-        check = check_held_out(policies, self.designs, self.protocol, threads=self.threads)
+            policies = (first, tuned, *others)
+        check = check_held_out(policies, designs, self.protocol, threads=self.threads)
         write_text(folder / "held_out.csv", check.rows.to_csv(index=False))
         write_text(folder / "comparisons.csv", check.comparisons.to_csv(index=False))
         if self.json:
             rows = check.rows.astype(object).where(check.rows.notna(), None).to_dict("records")
-            others = check.comparisons.astype(object).where(check.comparisons.notna(), None)
-            emit({"folder": folder, "rows": rows, "comparisons": others.to_dict("records")})
+            comparisons = check.comparisons.astype(object).where(check.comparisons.notna(), None)
+            emit({"folder": folder, "rows": rows, "comparisons": comparisons.to_dict("records")})
             return
         shown = [
             "policy",

@@ -20,11 +20,24 @@ from hyperleg_design.simulation.design_spread import load_design_spread
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.result import Evaluation
+    from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.simulation.design_spread import DesignSpread
 
 EACH = "{}"
 """In the path of a policy: it stands for the number of the design, one policy a design."""
 COST, SPEED = "cost_of_transport", "steady_speed"
+
+
+@dataclass(frozen=True)
+class HeldOutDesigns:
+    """Designs of a spread that no training draws."""
+
+    batch: RobotDesign
+    """All of them, one behind the other."""
+    robots: tuple[RobotDesign, ...]
+    """Each of them."""
+    leaves: tuple[str, ...]
+    """Dotted paths of the values in which they differ."""
 
 
 @dataclass(frozen=True)
@@ -41,9 +54,30 @@ class HeldOutCheck:
     designs), `designs` (how many those are), `more_falls` (share of trials, first less other)."""
 
 
+def held_out_designs(
+    policies: Sequence[str | Path], designs: str | Path | DesignSpread
+) -> HeldOutDesigns:
+    """Draw the held-out designs of a spread.
+
+    Args:
+        policies: as in `check_held_out`; the leaves of the first one's design are replaced.
+        designs: a shipped name, a file, or a `DesignSpread`.
+
+    Returns:
+        The designs.
+
+    Raises:
+        InputError: no such policy or spread.
+    """
+    spread = load_design_spread(designs) if isinstance(designs, str | Path) else designs
+    batch = spread.held_out_designs(load_policy(judged(policies)).design)
+    robots = tuple(batch.take(i) for i in range(spread.held_out))
+    return HeldOutDesigns(batch, robots, tuple(spread.ranges.ranges))
+
+
 def check_held_out(
     policies: Sequence[str | Path],
-    designs: str | Path | DesignSpread,
+    designs: HeldOutDesigns,
     protocol: str | Path | Any = "walk",
     *,
     threads: int | None = None,
@@ -53,7 +87,7 @@ def check_held_out(
     Args:
         policies: ONNX files or shipped names; the first is judged, the others are what it is
             compared with. A path with `{}` names one policy for each design, by its number.
-        designs: a shipped name, a file, or a `DesignSpread`.
+        designs: of `held_out_designs`.
         protocol: of walks, as `evaluate` takes it.
         threads: of the simulation; the result does not depend on it.
 
@@ -65,20 +99,17 @@ def check_held_out(
         InputError: no policy, or as in `evaluate_designs`.
     """
     first_name = judged(policies)
-    spread = load_design_spread(designs) if isinstance(designs, str | Path) else designs
-    batch = spread.held_out_designs(load_policy(first_name).design)
-    robots = [batch.take(i) for i in range(spread.held_out)]
     rows: list[dict[str, Any]] = []
     for policy in policies:
         if EACH in str(policy):
             done = [
-                evaluate(str(policy).replace(EACH, str(i)), protocol, design=one, threads=threads)
-                for i, one in enumerate(robots)
+                evaluate(str(policy).replace(EACH, str(i)), protocol, design=robot, threads=threads)
+                for i, robot in enumerate(designs.robots)
             ]
         else:
-            done = evaluate_designs(policy, batch, protocol, threads=threads)
-        for i, (robot, result) in enumerate(zip(robots, done, strict=True)):
-            leaves = {path: float(robot[path]) for path in spread.ranges.ranges}
+            done = evaluate_designs(policy, designs.batch, protocol, threads=threads)
+        for i, (robot, result) in enumerate(zip(designs.robots, done, strict=True)):
+            leaves = {path: float(robot[path]) for path in designs.leaves}
             rows.append({"policy": str(policy), "design": i, **_row(result), **leaves})
     table = pd.DataFrame(rows)
     first = table[table["policy"] == str(first_name)]

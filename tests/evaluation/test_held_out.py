@@ -6,7 +6,7 @@ import pytest
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.held_out import check_held_out, compared
+from hyperleg_design.evaluation.held_out import check_held_out, compared, held_out_designs
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.evaluation.training_fit import training_fit
@@ -45,7 +45,8 @@ def test_policies_are_compared_on_the_same_designs() -> None:
         ranges=DesignRanges({"toe.mass": Range(0.1, 0.4)}), pool=4, held_out=2, held_out_seed=9
     )
     short = WalkProtocol(trials=2, distance=0.5, time_limit=1.0, steady=Steady(begin=0.1, end=0.5))
-    check = check_held_out(["walk_upright-toe-0", "walk_upright-toe-0"], spread, short, threads=1)
+    policies = ["walk_upright-toe-0", "walk_upright-toe-0"]
+    check = check_held_out(policies, held_out_designs(policies, spread), short, threads=1)
     assert set(check.rows["design"]) == {0, 1}
     assert set(check.rows["trained"]) == {"zero-shot"}
     assert set(check.rows["trials"]) == {2}
@@ -56,7 +57,7 @@ def test_policies_are_compared_on_the_same_designs() -> None:
 @pytest.mark.parametrize("policies", [[], ["runs/{}/policy.onnx"]])
 def test_needs_a_policy_for_all_designs(policies: list[str]) -> None:
     with pytest.raises(InputError, match="one policy for all"):
-        check_held_out(policies, "toe")
+        held_out_designs(policies, "toe")
 
 
 def test_the_shipped_conditioned_policy_was_not_trained_on_held_out_designs() -> None:

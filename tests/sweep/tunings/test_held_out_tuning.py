@@ -7,10 +7,10 @@ import pytest
 import yaml
 
 from hyperleg_design.errors import InputError, OutputError
+from hyperleg_design.evaluation.held_out import held_out_designs
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.training_fit import training_fit
 from hyperleg_design.robot.load import load_robot
-from hyperleg_design.simulation.design_spread import load_design_spread
 from hyperleg_design.sweep.tunings import fine_tuning
 from hyperleg_design.sweep.tunings.held_out_tuning import fine_tune_held_out, write_held_out
 
@@ -51,20 +51,21 @@ def conditioned(tmp_path_factory):
 
 def test_the_files_hold_the_held_out_designs(conditioned, tmp_path):
     policy, designs = conditioned
-    write_held_out(policy, designs, tmp_path)
-    batch = load_design_spread(designs).held_out_designs(load_policy(policy).design)
-    for i in range(2):
+    robots = held_out_designs([policy], designs).robots
+    write_held_out(robots, tmp_path)
+    for i, robot in enumerate(robots):
         written = load_robot(tmp_path / str(i) / "design.yaml")
         for leaf in ("toe.mass", "foot.ball_length", "thigh.length"):
-            np.testing.assert_array_equal(written[leaf], batch.take(i)[leaf])
-    write_held_out(policy, designs, tmp_path)
+            np.testing.assert_array_equal(written[leaf], robot[leaf])
+    write_held_out(robots, tmp_path)
     with pytest.raises(OutputError, match=r"0/design\.yaml: is of another design"):
-        write_held_out(policy, spread(tmp_path, 0.5), tmp_path)
+        write_held_out(robots[::-1], tmp_path)
 
 
 def test_every_held_out_design_gets_a_specialist_of_its_own(conditioned, tmp_path):
     policy, designs = conditioned
-    robots = write_held_out(policy, designs, tmp_path)
+    robots = held_out_designs([policy], designs).robots
+    write_held_out(robots, tmp_path)
     pattern = fine_tune_held_out(policy, robots, 64, tmp_path, workers=1, progress=False)
     for i, robot in enumerate(robots):
         tuned = load_policy(pattern.replace("{}", str(i)))
@@ -77,14 +78,8 @@ def test_a_design_outside_the_ranges_is_refused_before_any_training(
     conditioned, tmp_path, monkeypatch
 ):
     policy, _ = conditioned
-    robots = write_held_out(policy, spread(tmp_path, 0.9), tmp_path / "out")
+    robots = held_out_designs([policy], spread(tmp_path, 0.9)).robots
     assert max(float(robot["toe.mass"]) for robot in robots) > 0.4
     monkeypatch.setattr(fine_tuning, "_started", lambda training: pytest.fail("began"))
     with pytest.raises(InputError, match=r"toe\.mass.*expects 0\.1 \.\. 0\.4"):
         fine_tune_held_out(policy, robots, 64, tmp_path / "out", workers=1, progress=False)
-
-
-def test_nothing_is_written_for_a_policy_that_is_not_there(tmp_path):
-    with pytest.raises(InputError, match="no such file"):
-        write_held_out("walk_upright-toe-99", "toe", tmp_path / "out")
-    assert not (tmp_path / "out").exists()
