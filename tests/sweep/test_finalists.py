@@ -4,7 +4,6 @@ import json
 
 import pytest
 
-from hyperleg_design import cli
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
@@ -138,14 +137,3 @@ def test_fine_tuned_policies_decide(walked, tmp_path, monkeypatch):
     best = min(final.finalists, key=lambda f: f.after["walk.power"])
     assert final.winners[0] == best.number
     assert "by the values after fine-tuning" in final_text(search, final)
-
-
-def test_from_the_command_line(tmp_path, capsys):
-    import yaml
-
-    (tmp_path / "space.yaml").write_text(yaml.safe_dump(SPACE | {"objectives": ["total_mass"]}))
-    arguments = ["search", str(tmp_path / "space.yaml"), "--trials", "3", "--out"]
-    assert cli.main([*arguments, str(tmp_path / "out"), "--constraint", "total_mass<=99"]) == 0
-    assert "winner: design" in capsys.readouterr().out
-    assert cli.main([*arguments, str(tmp_path / "two"), "--finetune", "1000"]) == 2
-    assert "needs a protocol" in capsys.readouterr().err

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from hyperleg_design import cli
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.report.sweep.search_text import final_text
@@ -159,18 +158,6 @@ def test_designs_of_a_quadruped_are_walked_and_its_finalist_walks_again(tmp_path
     assert f"--set 'actuators.knee.gear={finalist.before['actuators.knee.gear']:.10g}'" in (
         final_text(search, final)
     )
-
-
-def test_from_the_command_line(tmp_path, capsys):
-    import yaml
-
-    (tmp_path / "space.yaml").write_text(yaml.safe_dump(SPACE))
-    arguments = ["search", str(tmp_path / "space.yaml"), "--trials", "6"]
-    bounds = ["--constraint", "push_off_use<=1.5", "--out", str(tmp_path / "out")]
-    assert cli.main([*arguments, *bounds]) == 0
-    assert "candidates" in capsys.readouterr().out
-    assert cli.main([*arguments, "--objective", "cost_of_transport", *bounds]) == 2
-    assert "--evaluate" in capsys.readouterr().err
 
 
 def _postgres() -> Path | None:

@@ -7,7 +7,7 @@ import io
 import numpy as np
 import pytest
 
-from hyperleg_design.errors import HyperlegError, InputError
+from hyperleg_design.errors import InputError
 from hyperleg_design.report.pictures import motion, video
 
 
@@ -64,22 +64,3 @@ def test_a_missing_encoder_is_told(monkeypatch, tmp_path):
     monkeypatch.setattr(video.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"hyperleg-design\[video\]"):
         video.write_video(shown(2), tmp_path / "a.mp4")
-
-
-def test_a_recording_becomes_a_video(walks, tmp_path):
-    from hyperleg_design.cli import main
-    from hyperleg_design.gap.logs.log import write_log
-    from hyperleg_design.gap.logs.recording import log_of_trial
-    from hyperleg_design.report.pictures.motion import walk_motion
-
-    log = log_of_trial(walks["toe"], metadata={"robot": "toe"})
-    write_log(tmp_path / "walk.parquet", log)
-    out = tmp_path / "walk.gif"
-    arguments = ["--duration", "0.2", "--fps", "10", "--size", "160", "128", "--out", str(out)]
-    try:
-        video.drawn_frames(walk_motion(walks["toe"], duration=0.1), "probe")
-    except HyperlegError as error:
-        pytest.skip(str(error))
-    assert main(["video", str(tmp_path / "walk.parquet"), *arguments]) == 0
-    assert out.read_bytes().startswith(b"GIF89a")
-    assert main(["video", "walk_upright-toe-0", "--set", "toe.mass=1", "--out", str(out)]) == 2

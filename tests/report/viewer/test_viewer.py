@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import socket
 
 import numpy as np
 import pytest
 
-from hyperleg_design.cli import main
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.recording import log_of_trial
 from hyperleg_design.report.viewer import needs, viewer
@@ -92,12 +90,3 @@ def test_a_missing_package_is_told(monkeypatch):
     monkeypatch.setattr(needs.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"hyperleg-design\[view\]"):
         needs.check_installed()
-
-
-def test_the_command_builds_the_page_once(capsys):
-    assert main(["view", "teaching_leg", "--once", "--json", "--port", str(free_port())]) == 0
-    assert json.loads(capsys.readouterr().out)["designs"] == ["teaching_leg"]
-    assert main(["view", "toe", "--recording", "no.parquet", "--once"]) == 2
-    assert "does not exist" in capsys.readouterr().err
-    assert main(["view", "--recording", "a.parquet", "--policy", "b", "--once"]) == 2
-    assert "--recording" in capsys.readouterr().err
