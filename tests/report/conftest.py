@@ -17,6 +17,8 @@ from hyperleg_design.evaluation.protocols.walk import measure_walk
 from hyperleg_design.evaluation.result import evaluation_of
 from hyperleg_design.evaluation.rollout import ARRIVED, FELL, Trial
 from hyperleg_design.evaluation.shipped import Shipped
+from hyperleg_design.report.drawer import FIGURES, Drawer
+from hyperleg_design.report.pictures import gif, picture
 from hyperleg_design.report.walks.evaluated import Evaluated
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.simulation.environment import Environment
@@ -25,6 +27,7 @@ from hyperleg_design.simulation.model import simulation_model
 from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.sizing.demand import demand
 from hyperleg_design.sizing.motions.walk import walk
+from hyperleg_design.writing import write_bytes
 
 SAMPLES, STRIDES, STRIDE_TIME = 168, 20, 0.84
 DESIGNS = ("toe", "toe_removed_matched")
@@ -193,6 +196,31 @@ def courses(course_run, tmp_path_factory):
                 one = evaluation(course_run, TTestProtocol(), policies[-1].name, seed, change)
                 evaluations.append(one if seed == late == 0 else one.light(0))
     return Evaluated(policies, evaluations)
+
+
+@pytest.fixture
+def draw(tmp_path, monkeypatch):
+    """Draws figures into a folder of its own; animations and scenes, which other tests draw, are
+    stubs.
+    """
+    monkeypatch.setattr(gif, "render_gif", lambda made, path: write_bytes(path, b"GIF89a"))
+    monkeypatch.setattr(picture, "render", lambda scene, path: write_bytes(path, b"PNG"))
+    (tmp_path / FIGURES).mkdir()
+    return Drawer(tmp_path)
+
+
+def flat(content):
+    """Items of a part, lists among them opened."""
+    for item in content:
+        if isinstance(item, list):
+            yield from flat(item)
+        else:
+            yield item
+
+
+def of_kind(content, kind):
+    """Items of a part that are tables, pictures or texts."""
+    return [item for item in flat(content) if isinstance(item, kind)]
 
 
 @pytest.fixture(scope="session")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from hyperleg_design.report.drawer import Drawer
-from hyperleg_design.report.style import save
+from hyperleg_design.report.style import later
 from hyperleg_design.report.walks.beside_paper import beside, rows_beside_paper, toe_sentence
 from hyperleg_design.report.walks.evaluated import Evaluated
 from hyperleg_design.report.walks.versus_figures import change_figure
@@ -35,6 +35,6 @@ def paper_tables(evaluated: Evaluated, draw: Drawer, table: str) -> list[Any]:
     figure = draw(
         table.lower().replace(" ", "_"),
         "Change that the toe makes: ours beside the paper's.",
-        lambda p: save(change_figure(tables), p),
+        later(change_figure, tables),
     )
     return [*content, figure]

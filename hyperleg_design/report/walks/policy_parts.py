@@ -13,11 +13,12 @@ from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.report.drawer import Drawer, Part
 from hyperleg_design.report.page import Cell, Details, Table
 from hyperleg_design.report.sizing.envelope_figures import torque_speed_figure
-from hyperleg_design.report.style import later, save
+from hyperleg_design.report.style import later
 from hyperleg_design.report.walks import walk_parts as walks
 from hyperleg_design.report.walks.arms_part import arms
 from hyperleg_design.report.walks.confound_part import confound
 from hyperleg_design.report.walks.evaluated import CAMPAIGNS, T_TEST, WALK, Evaluated
+from hyperleg_design.report.walks.impact_part import impacts
 from hyperleg_design.report.walks.learning_figures import learning_figure
 from hyperleg_design.report.walks.planned_part import planned, planned_rows
 from hyperleg_design.report.walks.t_test_part import table_four
@@ -50,7 +51,7 @@ def parts(evaluated: Evaluated, draw: Drawer) -> list[Part]:
         list_of_parts.append(table_four(evaluated, draw))
     list_of_parts += [arms(evaluated), confound(evaluated, draw)]
     if evaluated.band:
-        list_of_parts.append(walks.impacts(evaluated, draw))
+        list_of_parts.append(impacts(evaluated, draw))
     return [*list_of_parts, _motors(evaluated, draw), _learning(evaluated, draw)]
 
 
@@ -173,6 +174,4 @@ def _learning(evaluated: Evaluated, draw: Drawer) -> Part:
     if not curves:
         return Part("Learning curves", ["No training brought its learning curve along."])
     caption = "Means over the robots in training, with exploration, and with assist as long as there is some."
-    return Part(
-        "Learning curves", [draw("learning", caption, lambda p: save(learning_figure(curves), p))]
-    )
+    return Part("Learning curves", [draw("learning", caption, later(learning_figure, curves))])

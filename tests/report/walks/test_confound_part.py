@@ -7,17 +7,9 @@ import dataclasses
 import pytest
 
 from hyperleg_design.evaluation.attribution import WHOLE
-from hyperleg_design.report.drawer import FIGURES, Drawer
 from hyperleg_design.report.page import Table
-from hyperleg_design.report.walks import walk_parts
 from hyperleg_design.report.walks.confound_part import ATTRIBUTED, confound
 from hyperleg_design.report.walks.evaluated import T_TEST
-
-
-@pytest.fixture
-def draw(tmp_path):
-    (tmp_path / FIGURES).mkdir()
-    return Drawer(tmp_path)
 
 
 def test_steps_that_need_missing_ablations_are_named(found, draw):
@@ -61,11 +53,6 @@ def test_without_two_ablations_nothing_is_split(found, draw):
         found, policies=[p for p, _ in toe], evaluations=[e for _, e in toe]
     )
     assert confound(alone, draw).content[-1].startswith("Cannot be told yet")
-    assert (
-        walk_parts.table_three(alone, draw)
-        .content[-1]
-        .startswith("Table III cannot be reproduced yet")
-    )
 
 
 def test_t_tests_are_split_as_walks_are(courses, draw):
