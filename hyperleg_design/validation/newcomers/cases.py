@@ -10,7 +10,7 @@ from pathlib import Path
 import mujoco
 
 from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
-from hyperleg_design.validation.newcomers.names import ALIKE, EFFECTS, SIZES
+from hyperleg_design.validation.newcomers.names import EFFECTS, fault_of
 from hyperleg_design.validation.newcomers.plant import Wrong, built, simulate
 from hyperleg_design.validation.newcomers.robots import ROBOTS, Robot
 
@@ -214,25 +214,18 @@ def material(data: Path, plan: Plan) -> tuple[Material, Truth]:
 def _fault(plan: Plan, robot: Robot, wrong: Wrong, build: int) -> Fault:
     """What is wrong in the words of the catalogue."""
     model = mujoco.MjModel.from_xml_string(robot.xml)
-    if wrong.what not in EFFECTS:
-        return Fault(wrong.what.replace(" ", "_"), (), listed=False)
     joint, motor = model.joint(wrong.place).name, model.actuator(wrong.place).name
     of_motor = wrong.what in ("weak", "limit", "rotor", "soft", "play", "lag")
     coupled = model.ntendon > 0 and wrong.place >= 2
     places: tuple[str, ...] = (motor,) if of_motor and coupled else (joint, motor)
     if wrong.what == "load":
         places = plan.fault_places
-    if wrong.what == "late":
-        places = ("robot",)
-    values = {}
-    if wrong.what in SIZES:
-        values = {SIZES[wrong.what]: wrong.size}
+    values = None
     if wrong.what in ("rough", "thick"):
         values = _excess(model, robot, wrong, build, plan.references)
     if wrong.what == "rotor" and not coupled and float(model.actuator_gear[wrong.place, 0]) == 1:
         values = {"inertia": wrong.size}
-    alike = tuple((effect, places) for effect in ALIKE.get(wrong.what, ()))
-    return Fault(EFFECTS[wrong.what], places, values, alike)
+    return fault_of(wrong.what, places, wrong.size, values)
 
 
 def _excess(

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import mujoco
+from typing_extensions import override
 
 from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
 from hyperleg_design.validation.newcomers import crane
+from hyperleg_design.validation.newcomers.case_plan import CasePlan, development_cases
 from hyperleg_design.validation.newcomers.crane import BODIES, JOINTS, MOTORS, Run
-from hyperleg_design.validation.newcomers.names import ALIKE, EFFECTS, SIZES
-from hyperleg_design.validation.newcomers.plant import Wrong, everywhere
+from hyperleg_design.validation.newcomers.names import fault_of
+from hyperleg_design.validation.newcomers.plant import Wrong
 
+DURATION = 12.0
+"""Of each log [s]."""
 USUAL = ("picks", "waves")
 """Motions of tests and references where a case says nothing else."""
 OTHER = ("draws", "draws")
@@ -22,28 +24,62 @@ OTHER = ("draws", "draws")
 
 
 @dataclass(frozen=True)
-class CranePlan:
+class CranePlan(CasePlan):
     """One case of the crane."""
 
-    label: str
-    wrongs: tuple[Wrong, ...] = ()
-    drive: str = "filtered"
-    """One of `crane.DRIVES`."""
     tests: tuple[str, ...] = USUAL
     references: tuple[str, ...] = USUAL
-    """Motions, one a log."""
+    drive: str = "filtered"
+    """One of `crane.DRIVES`."""
     commands: bool = True
     """Whether logs hold what the controllers ask for."""
+    robot = "crane"
 
     @property
-    def kind(self) -> str:
-        """Which of `benchmark.case.KINDS` the case is, by its faults."""
-        return Truth(_faults(self), everywhere=everywhere(self.wrongs)).kind
+    @override
+    def about(self) -> str:
+        return f"crane with {self.drive} drives"
 
-    @property
-    def build(self) -> int:
-        """Seed of how the crane was built, and of its motions."""
-        return zlib.crc32(self.label.encode()) // 16
+    @override
+    def fault(self, wrong: Wrong) -> Fault:
+        model, _ = crane.built(self.seed)
+        compared = model if self.references else mujoco.MjModel.from_xml_string(crane.XML)
+        what, j, size = wrong.what, wrong.place, wrong.size
+        if what == "load":
+            body = model.body(BODIES[j]).id
+            excess = size + model.body_mass[body] - compared.body_mass[body]
+            return fault_of(what, (BODIES[j], JOINTS[j]), excess)
+        values = None
+        if what == "rough":
+            excess = size * model.dof_frictionloss[j] - compared.dof_frictionloss[j]
+            values = {"torque": float(excess)}
+        if what == "thick":
+            values = {"damping": float(size * model.dof_damping[j] - compared.dof_damping[j])}
+        return fault_of(what, (JOINTS[j], MOTORS[j]), size, values)
+
+    @override
+    def material(self, data: Path, duration: float) -> tuple[Material, Truth]:
+        tests = self._logs(self.wrongs, self.tests, self.seed, "test", duration)
+        references = self._logs((), self.references, self.seed + 100, "healthy", duration)
+        return Material(crane.XML, tests, references), self.truth
+
+    def _logs(
+        self,
+        wrongs: tuple[Wrong, ...],
+        motions: tuple[str, ...],
+        seed: int,
+        label: str,
+        duration: float,
+    ) -> tuple[Recording, ...]:
+        """One log a motion, all of one crane."""
+        hidden = () if self.commands else ("motor_torque_command",)
+        runs = (
+            Run(motion, self.drive, seed + 10 * k, self.seed, f"{label}_{k}", duration)
+            for k, motion in enumerate(motions)
+        )
+        return tuple(
+            crane.simulate(wrongs, run).declared(session=label).without(*hidden) for run in runs
+        )
 
 
 def _one(label: str, what: str, place: int, size: float, **more: object) -> CranePlan:
@@ -81,8 +117,8 @@ PLANS: tuple[CranePlan, ...] = (
     CranePlan(
         "load-rough",
         (Wrong("load", 3, 0.4), Wrong("rough", 0, 2.5)),
-        "lagging",
         ("picks", "draws"),
+        drive="lagging",
     ),
     CranePlan("late-weak", (Wrong("late", 0, 0.012), Wrong("weak", 1, 0.8))),
     _one("stop-luff", "stop", 1, 0.45),
@@ -98,79 +134,4 @@ PLANS: tuple[CranePlan, ...] = (
 
 def crane_cases() -> list[Case]:
     """List all cases of the crane."""
-    return [
-        Case(
-            f"new-crane-{plan.label}",
-            "newcomers",
-            "development",
-            f"crane with {plan.drive} drives, {plan.label.replace('-', ' ')}",
-            plan.kind,
-            partial(material, plan=plan),
-        )
-        for plan in PLANS
-    ]
-
-
-def material(data: Path, plan: CranePlan, duration: float = 12.0) -> tuple[Material, Truth]:
-    """The files of one case and its truth.
-
-    Args:
-        data: of the real logs; none are used.
-        plan: of the case.
-        duration: of each log [s].
-    """
-
-    def logs(
-        wrongs: tuple[Wrong, ...], motions: tuple[str, ...], first: int, label: str
-    ) -> tuple[Recording, ...]:
-        return tuple(
-            crane.simulate(
-                wrongs,
-                Run(
-                    motion,
-                    plan.drive,
-                    plan.build + first + 10 * k,
-                    plan.build,
-                    f"{label}_{k}",
-                    duration,
-                ),
-            )
-            .declared(session=label)
-            .without(*(() if plan.commands else ("motor_torque_command",)))
-            for k, motion in enumerate(motions)
-        )
-
-    truth = Truth(_faults(plan), bool(plan.references), everywhere=everywhere(plan.wrongs))
-    tests = logs(plan.wrongs, plan.tests, 0, "test")
-    return Material(crane.XML, tests, logs((), plan.references, 100, "healthy")), truth
-
-
-def _faults(plan: CranePlan) -> tuple[Fault, ...]:
-    """What is wrong in the words of the catalogue."""
-    model, _ = crane.built(plan.build)
-    compared = model if plan.references else mujoco.MjModel.from_xml_string(crane.XML)
-    faults = []
-    for wrong in plan.wrongs:
-        what, j, size = wrong.what, wrong.place, wrong.size
-        if what not in EFFECTS:
-            faults.append(Fault(what, (), listed=False))
-            continue
-        places: tuple[str, ...] = (JOINTS[j], MOTORS[j])
-        if what == "load":
-            body = model.body(BODIES[j]).id
-            places, size = (
-                (BODIES[j], JOINTS[j]),
-                size + model.body_mass[body] - compared.body_mass[body],
-            )
-        if what == "late":
-            places = ("robot",)
-        values = {SIZES[what]: float(size)} if what in SIZES else {}
-        if what == "rough":
-            values = {
-                "torque": float(size * model.dof_frictionloss[j] - compared.dof_frictionloss[j])
-            }
-        if what == "thick":
-            values = {"damping": float(size * model.dof_damping[j] - compared.dof_damping[j])}
-        alike = tuple((effect, places) for effect in ALIKE.get(what, ()))
-        faults.append(Fault(EFFECTS[what], places, values, alike))
-    return tuple(faults)
+    return development_cases(PLANS, DURATION)

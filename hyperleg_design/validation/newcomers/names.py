@@ -2,6 +2,12 @@
 and the parameter that is its size.
 """
 
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from hyperleg_design.validation.benchmark.case import Fault
+
 EFFECTS = {
     "load": "payload",
     "dry": "coulomb_friction",
@@ -46,3 +52,26 @@ SIZES = {
     "lossy": "coefficient",
 }
 """Parameter of the catalogue whose true value is the size of what is wrong."""
+
+
+def fault_of(
+    what: str, places: tuple[str, ...], size: float, values: Mapping[str, float] | None = None
+) -> Fault:
+    """State one thing that is wrong in the words of the catalogue.
+
+    Args:
+        what: a key of `EFFECTS`, or the name of something that the catalogue lacks.
+        places: names that count as its place, the proper one first.
+        size: of what is wrong.
+        values: true values by the catalogue's names where they are not just the size.
+
+    Returns:
+        The fault, with the effects that logs cannot tell from it.
+    """
+    if what not in EFFECTS:
+        return Fault(what.replace(" ", "_"), (), listed=False)
+    if what == "late":
+        places = ("robot",)
+    if values is None:
+        values = {SIZES[what]: float(size)} if what in SIZES else {}
+    return Fault(EFFECTS[what], places, values, tuple((e, places) for e in ALIKE.get(what, ())))

@@ -4,18 +4,22 @@ the truth.
 
 from __future__ import annotations
 
-import zlib
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from pathlib import Path
+
+from typing_extensions import override
 
 from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
 from hyperleg_design.validation.newcomers import quadruped
-from hyperleg_design.validation.newcomers.names import ALIKE, EFFECTS, SIZES
-from hyperleg_design.validation.newcomers.plant import Wrong, everywhere
+from hyperleg_design.validation.newcomers.case_plan import CasePlan, development_cases
+from hyperleg_design.validation.newcomers.names import fault_of
+from hyperleg_design.validation.newcomers.plant import Wrong
 from hyperleg_design.validation.newcomers.quadruped import Run
 from hyperleg_design.validation.newcomers.quadruped_log import FEET, JOINTS
 
+DURATION = 10.0
+"""Of each log [s]."""
 USUAL = ("sway", "trot")
 """Motions of tests and references where a case says nothing else."""
 OTHER = ("squat", "crawl")
@@ -26,37 +30,77 @@ AXES = ("gyro_x", "gyro_y", "gyro_z")
 
 
 @dataclass(frozen=True)
-class QuadrupedPlan:
+class QuadrupedPlan(CasePlan):
     """One case of the quadruped."""
 
-    label: str
-    wrongs: tuple[Wrong, ...] = ()
     tests: tuple[str, ...] = USUAL
     references: tuple[str, ...] = USUAL
-    """Motions, one a log."""
     plain: bool = False
     """Whether the robot's file is the URDF as it comes, which lacks friction and rotors."""
+    robot = "quadruped"
+    about = "quadruped on its feet"
 
     @property
-    def truth(self) -> Truth:
-        """What is wrong, over what the references' session had."""
-        faults = tuple(_fault(wrong, self) for wrong in self.wrongs)
-        return Truth(
-            faults,
-            bool(self.references),
-            identified=not self.plain,
-            everywhere=everywhere(self.wrongs),
-        )
+    @override
+    def identified(self) -> bool:
+        return not self.plain
 
     @property
     def build(self) -> int:
-        """Seed of how its robot was built, and of the references' session."""
+        """Seed of how its robot was built, and of the references' session; `seed` is that of the
+        motions, the noise and the session of its tests.
+        """
         return 40 + self.seed % ROBOTS
 
-    @property
-    def seed(self) -> int:
-        """Of the motions, the noise and the session of its tests, and of what robot it has."""
-        return zlib.crc32(self.label.encode()) // 16
+    @override
+    def fault(self, wrong: Wrong) -> Fault:
+        what, j, size = wrong.what, wrong.place, wrong.size
+        now, then = quadruped.session(self.seed), quadruped.session(self.build)
+        if what == "slippery":
+            return Fault("ground_friction", (FEET[j],), {"scale": size * now.floor / then.floor})
+        if what == "soft":
+            return Fault("ground_compliance", (FEET[j],))
+        if what == "gyro":
+            bias = size + float(now.bias[j] - then.bias[j])
+            return Fault("imu_bias", ("imu",), {AXES[j]: bias})
+        if what == "load":
+            joint = "base" if wrong.body == "trunk" else f"{wrong.body}_joint"
+            return fault_of(what, (wrong.body, joint), size)
+        values = {
+            "dry": {"torque": size + quadruped.RUBBING * float(now.rubbing[j] - then.rubbing[j])},
+            "rough": {"torque": quadruped.RUBBING * float(size * now.rubbing[j] - then.rubbing[j])},
+            "weak": {"scale": size * float(now.torques[j] / then.torques[j])},
+            "zero": {"offset": size + float(now.zero[j] - then.zero[j])},
+            "rotor": {"inertia": size},
+        }.get(what)
+        return fault_of(what, (JOINTS[j], JOINTS[j].removesuffix("_joint")), size, values)
+
+    @override
+    def material(self, data: Path, duration: float) -> tuple[Material, Truth]:
+        tests = tuple(
+            quadruped.simulate(
+                self.wrongs,
+                Run(motion, self.seed + 10 * k, self.build, self.seed, f"test_{k}", duration),
+            ).declared(session="test")
+            for k, motion in enumerate(self.tests)
+        )
+        references = tuple(
+            _healthy(
+                Run(
+                    motion,
+                    1000 * self.build + 10 * k,
+                    self.build,
+                    self.build,
+                    f"healthy_{k}",
+                    duration,
+                )
+            )
+            for k, motion in enumerate(self.references)
+        )
+        if not self.plain:
+            return Material(quadruped.careful_file(), tests, references), self.truth
+        tests, references = (tuple(map(_by_joint, logs)) for logs in (tests, references))
+        return Material(quadruped.plain_file(), tests, references), self.truth
 
 
 def _one(label: str, what: str, joint: str, size: float) -> QuadrupedPlan:
@@ -100,51 +144,7 @@ PLANS: tuple[QuadrupedPlan, ...] = (
 
 def quadruped_cases() -> list[Case]:
     """List all cases of the quadruped."""
-    return [
-        Case(
-            f"new-quadruped-{plan.label}",
-            "newcomers",
-            "development",
-            f"quadruped on its feet, {plan.label.replace('-', ' ')}",
-            plan.truth.kind,
-            partial(material, plan=plan),
-        )
-        for plan in PLANS
-    ]
-
-
-def material(data: Path, plan: QuadrupedPlan, duration: float = 10.0) -> tuple[Material, Truth]:
-    """The files of one case and its truth.
-
-    Args:
-        data: of the real logs; none are used.
-        plan: of the case.
-        duration: of each log [s].
-    """
-    tests = tuple(
-        quadruped.simulate(
-            plan.wrongs,
-            Run(motion, plan.seed + 10 * k, plan.build, plan.seed, f"test_{k}", duration),
-        ).declared(session="test")
-        for k, motion in enumerate(plan.tests)
-    )
-    references = tuple(
-        _healthy(
-            Run(
-                motion,
-                1000 * plan.build + 10 * k,
-                plan.build,
-                plan.build,
-                f"healthy_{k}",
-                duration,
-            )
-        )
-        for k, motion in enumerate(plan.references)
-    )
-    if not plan.plain:
-        return Material(quadruped.careful_file(), tests, references), plan.truth
-    tests, references = (tuple(map(_by_joint, logs)) for logs in (tests, references))
-    return Material(quadruped.plain_file(), tests, references), plan.truth
+    return development_cases(PLANS, DURATION)
 
 
 def _by_joint(log: Recording) -> Recording:
@@ -160,31 +160,3 @@ def _by_joint(log: Recording) -> Recording:
 def _healthy(run: Run) -> Recording:
     """A log of a healthy robot, which cases share that have the same robot."""
     return quadruped.simulate((), run).declared(session="healthy")
-
-
-def _fault(wrong: Wrong, plan: QuadrupedPlan) -> Fault:
-    """What is wrong in the words of the catalogue, over what the references' session had."""
-    what, j, size = wrong.what, wrong.place, wrong.size
-    now, then = quadruped.session(plan.seed), quadruped.session(plan.build)
-    if what == "slippery":
-        return Fault("ground_friction", (FEET[j],), {"scale": size * now.floor / then.floor})
-    if what == "soft":
-        return Fault("ground_compliance", (FEET[j],))
-    if what == "gyro":
-        bias = size + float(now.bias[j] - then.bias[j])
-        return Fault("imu_bias", ("imu",), {AXES[j]: bias})
-    if what not in EFFECTS:
-        return Fault(what, (), listed=False)
-    places: tuple[str, ...] = (JOINTS[j], JOINTS[j].removesuffix("_joint"))
-    if what == "load":
-        places = (wrong.body, "base" if wrong.body == "trunk" else f"{wrong.body}_joint")
-    if what == "late":
-        places = ("robot",)
-    values = {
-        "dry": {"torque": size + quadruped.RUBBING * float(now.rubbing[j] - then.rubbing[j])},
-        "rough": {"torque": quadruped.RUBBING * float(size * now.rubbing[j] - then.rubbing[j])},
-        "weak": {"scale": size * float(now.torques[j] / then.torques[j])},
-        "zero": {"offset": size + float(now.zero[j] - then.zero[j])},
-        "rotor": {"inertia": size},
-    }.get(what, {SIZES[what]: size} if what in SIZES else {})
-    return Fault(EFFECTS[what], places, values, tuple((e, places) for e in ALIKE.get(what, ())))

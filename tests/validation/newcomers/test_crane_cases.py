@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from hyperleg_design.validation.newcomers import crane
-from hyperleg_design.validation.newcomers.crane_cases import PLANS, crane_cases, material
+from hyperleg_design.validation.newcomers.crane_cases import PLANS, crane_cases
 
 
 def truth(label):
     plan = next(plan for plan in PLANS if plan.label == label)
-    return plan, material(Path(), plan, 0.2)
+    return plan, plan.material(Path(), 0.2)
 
 
 def test_cases_of_every_kind_are_there_and_all_are_for_development():
@@ -34,20 +34,20 @@ def test_cases_of_every_kind_are_there_and_all_are_for_development():
 def test_every_place_is_a_name_of_the_crane():
     names = {*crane.JOINTS, *crane.MOTORS, *crane.BODIES, "robot"}
     for plan in {plan.wrongs[0].what: plan for plan in PLANS if plan.wrongs}.values():
-        _, told = material(Path(), plan, 0.05)
-        assert told.kind == plan.kind
+        _, told = plan.material(Path(), 0.05)
+        assert told.kind == plan.truth.kind
         for fault in told.faults:
             assert set(fault.places) <= names
-            assert fault.listed == (plan.kind != "outside")
+            assert fault.listed == (plan.truth.kind != "outside")
 
 
 def test_sizes_are_over_what_references_or_the_file_say():
     file = mujoco.MjModel.from_xml_string(crane.XML)
     plan, (_, told) = truth("rough-luff")
-    own, _ = crane.built(plan.build)
+    own, _ = crane.built(plan.seed)
     assert told.faults[0].parameters["torque"] == pytest.approx(1.5 * own.dof_frictionloss[1])
     plan, (_, told) = truth("load-tool-alone")
-    own, _ = crane.built(plan.build)
+    own, _ = crane.built(plan.seed)
     more = own.body("tool").mass[0] - file.body("tool").mass[0]
     assert told.faults[0].parameters["mass"] == pytest.approx(0.5 + more)
 
@@ -65,7 +65,7 @@ def test_references_and_channels_are_those_of_the_plan():
 
 def test_tests_and_references_are_of_one_crane():
     plan, (made, _) = truth("nothing-same")
-    again = material(Path(), plan, 0.2)[0]
+    again = plan.material(Path(), 0.2)[0]
     for one, other in zip(made.logs, again.logs, strict=True):
         np.testing.assert_array_equal(one.signals["position/luff"], other.signals["position/luff"])
     first = [log.signals["position/luff"][0] for log in (*made.logs, *made.references)]

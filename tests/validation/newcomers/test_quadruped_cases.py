@@ -10,7 +10,7 @@ import pytest
 
 from hyperleg_design.gap.effects import EFFECTS as CATALOGUE
 from hyperleg_design.validation.newcomers import quadruped
-from hyperleg_design.validation.newcomers.quadruped_cases import PLANS, material, quadruped_cases
+from hyperleg_design.validation.newcomers.quadruped_cases import PLANS, quadruped_cases
 from hyperleg_design.validation.newcomers.quadruped_log import FEET, JOINTS
 
 
@@ -62,12 +62,12 @@ def test_values_are_over_what_the_references_had():
 
 
 def test_logs_hold_what_the_page_of_the_format_asks_for_and_references_are_shared():
-    made, truth = material(Path(), plan("nothing-same"), 0.2)
+    made, truth = plan("nothing-same").material(Path(), 0.2)
     assert truth.references
     kinds = {column.split("/")[0] for column in made.logs[0].signals}
     assert {"gyro", "accelerometer", "base_orientation", "contact_force", "velocity"} <= kinds
     assert made.logs[0].metadata["base"] == "floating"
-    again = material(Path(), plan("nothing-same"), 0.2)[0]
+    again = plan("nothing-same").material(Path(), 0.2)[0]
     for one, other in zip(made.logs, again.logs, strict=True):
         np.testing.assert_array_equal(
             one.signals["position/FR_hip_joint"], other.signals["position/FR_hip_joint"]
@@ -76,6 +76,6 @@ def test_logs_hold_what_the_page_of_the_format_asks_for_and_references_are_share
 
 
 def test_a_plain_case_has_the_description_as_it_comes():
-    made, _ = material(Path(), plan("nothing-plain"), 0.05)
+    made, _ = plan("nothing-plain").material(Path(), 0.05)
     assert "<robot" in made.robot
-    assert not material(Path(), plan("nothing-alone"), 0.05)[0].references
+    assert not plan("nothing-alone").material(Path(), 0.05)[0].references

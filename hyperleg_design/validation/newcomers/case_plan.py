@@ -1,0 +1,103 @@
+"""Plan of a case: what is wrong with a robot, and the motions that tests and references make."""
+
+from __future__ import annotations
+
+import zlib
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Truth
+from hyperleg_design.validation.newcomers.plant import Wrong, everywhere
+
+
+@dataclass(frozen=True)
+class CasePlan(ABC):
+    """One case of a robot; its class is the robot's."""
+
+    label: str
+    wrongs: tuple[Wrong, ...] = ()
+    """What is wrong with the robot of the tests."""
+    tests: tuple[str, ...] = ()
+    """Motions of the tests, one a log."""
+    references: tuple[str, ...] = ()
+    """Motions of the references, one a log."""
+
+    @property
+    @abstractmethod
+    def robot(self) -> str:
+        """Name of the robot, as the cases' names hold it."""
+
+    @property
+    @abstractmethod
+    def about(self) -> str:
+        """What the robot is, in some words for the docs."""
+
+    @abstractmethod
+    def fault(self, wrong: Wrong) -> Fault:
+        """State what is wrong in the words of the catalogue.
+
+        Args:
+            wrong: one of `wrongs`.
+
+        Returns:
+            The fault; its values are those over the references, or over the robot's file where
+            there are none.
+        """
+
+    @abstractmethod
+    def material(self, data: Path, duration: float) -> tuple[Material, Truth]:
+        """Make the files of the case and its truth.
+
+        Args:
+            data: folder of the real logs; none are used.
+            duration: of each log [s].
+
+        Returns:
+            Files and truth.
+        """
+
+    @property
+    def seed(self) -> int:
+        """Seed that the label gives, the same in every process."""
+        return zlib.crc32(self.label.encode()) // 16
+
+    @property
+    def identified(self) -> bool:
+        """Whether the robot's file is one that its makers identified."""
+        return True
+
+    @property
+    def truth(self) -> Truth:
+        """All that is wrong."""
+        return Truth(
+            tuple(self.fault(wrong) for wrong in self.wrongs),
+            bool(self.references),
+            identified=self.identified,
+            everywhere=everywhere(self.wrongs),
+        )
+
+
+def development_cases(plans: Sequence[CasePlan], duration: float) -> list[Case]:
+    """List the cases of a robot whose cases are all for development.
+
+    Args:
+        plans: of the cases.
+        duration: of each log [s].
+
+    Returns:
+        The cases in the same order.
+    """
+    return [
+        Case(
+            f"new-{plan.robot}-{plan.label}",
+            "newcomers",
+            "development",
+            f"{plan.about}, {plan.label.replace('-', ' ')}",
+            plan.truth.kind,
+            partial(plan.material, duration=duration),
+        )
+        for plan in plans
+    ]
