@@ -1,3 +1,4 @@
+import mujoco
 import numpy as np
 import pytest
 
@@ -52,3 +53,24 @@ def test_smooth_ground_lets_feet_slip(robot):
     _, slick = walker.trace((Wrong("ground_friction", "ground", 0.93, {}),), MOVING, 2.0, 0)
     hips = [np.ptp(t.encoder[:, 1] - t.encoder[:, 8]) for t in (firm, slick)]
     assert hips[1] > 1.2 * hips[0]  # legs spread farther where nothing holds the feet
+
+
+def test_a_load_on_the_pelvis_is_a_point_mass_there(robot):
+    walker, place = (
+        Walker(robot, perfect(robot), Floor(1.0, 1.0, 1.0), Recorder()),
+        [0.1, -0.05, 0.2],
+    )
+    load = Wrong("payload", "pelvis", 3.0, dict(zip("xyz", place, strict=True)))
+    matrices = []
+    for wrongs in ((), (load,)):
+        model = walker.plant(wrongs).model
+        data = mujoco.MjData(model)
+        data.qpos[3:7] = [0.8, 0.0, 0.6, 0.0]
+        mujoco.mj_forward(model, data)
+        matrices.append(np.zeros((model.nv, model.nv)))
+        mujoco.mj_fullM(model, data, matrices[-1])
+    body = model.body("pelvis").id
+    point = data.xpos[body] + data.xmat[body].reshape(3, 3) @ place
+    at = np.zeros((3, model.nv))
+    mujoco.mj_jac(model, data, at, None, point, body)
+    np.testing.assert_allclose(matrices[1] - matrices[0], 3.0 * at.T @ at, atol=1e-6)
