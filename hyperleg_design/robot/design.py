@@ -53,7 +53,8 @@ class Design(HyperLeg):
         checked where a mass in it is replaced.
 
         Args:
-            values: numbers, texts, or arrays of either with the batch in front.
+            values: numbers, texts, or arrays of either with the batch in front, by dotted path, or
+                by a pattern of paths such as `actuators.hip_*.gear`.
             where: what to name in errors.
             label: origin of the new values.
 
@@ -63,7 +64,8 @@ class Design(HyperLeg):
         Raises:
             InputError: unknown path, or a value or combination that makes no sense.
         """
-        origins = {**self.origins, **{str(p): Origin(label, where) for p in values}}
+        values = self.by_path(values)
+        origins = {**self.origins, **{p: Origin(label, where) for p in values}}
         unprinted = lapsed(self, values)
         origins.update(
             {p: Origin("derived", f"lapsed: a mass was replaced by {where}") for p in unprinted}
@@ -97,7 +99,7 @@ def load_design(
         InputError: names file, field, value and remedy.
     """
     design, own_variant = _read(resources.find("descriptions", name))
-    chosen = parse_overrides(overrides)
+    chosen = design.by_path(parse_overrides(overrides))
     design = changed(design, overrides=chosen, overlays=overlays)
     if own_variant and variant and own_variant != variant:
         raise InputError(

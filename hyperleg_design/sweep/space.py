@@ -10,6 +10,7 @@ seed: 0
 axes:
   toe.mass: {low: 0.1, high: 0.5, steps: 9}
   actuators.knee.motor: {values: [RI60, RI70]}
+  actuators.*_KFE.gear: {values: [6, 9]}    # a pattern: the same value for all that match it
   leg length: {paths: [thigh.length, shank.length], scale: {low: 0.8, high: 1.2, steps: 5}}
 measures: [swing_inertia]            # all by default
 objectives: [total_mass, push_off_power]   # any of `hyperleg list measures`

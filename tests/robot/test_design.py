@@ -32,6 +32,15 @@ def test_an_override_reaches_the_design(hyperleg):
     assert hyperleg["toe.mass"] == 0.22
 
 
+def test_a_pattern_reaches_all_that_match_it_and_later_values_win():
+    made = load_design(overrides=["actuators.*.gear=8", "actuators.knee.gear=6"])
+    gears = {name: made[f"actuators.{name}.gear"] for name in ("hip_yaw", "ankle", "toe", "knee")}
+    assert gears == {"hip_yaw": 8.0, "ankle": 8.0, "toe": 8.0, "knee": 6.0}
+    assert made.origins["actuators.toe.gear"] == Origin("user", "--set")
+    with pytest.raises(InputError, match=r"actuators\.\*\.gears = 8: no such field"):
+        load_design(overrides=["actuators.*.gears=8"])
+
+
 def test_overlays_go_before_overrides_and_keep_labels(write):
     first = write(
         "first.yaml", "toe: {mass: {value: 0.4, label: vendor, source: scale}}\nfoot: {mass: 0.7}\n"

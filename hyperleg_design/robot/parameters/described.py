@@ -144,7 +144,8 @@ class RobotDesign:
         """Copy the design with other values of some leaves.
 
         Args:
-            values: numbers, texts, or arrays of either with the batch in front.
+            values: numbers, texts, or arrays of either with the batch in front, by dotted path, or
+                by a pattern of paths such as `actuators.*_knee.gear`.
             where: what to name in errors.
             label: origin of the new values.
 
@@ -154,8 +155,24 @@ class RobotDesign:
         Raises:
             InputError: unknown path, or a value or combination that makes no sense.
         """
-        origins = {**self.origins, **{str(p): Origin(label, where) for p in values}}
+        values = self.by_path(values)
+        origins = {**self.origins, **{p: Origin(label, where) for p in values}}
         return self._replaced(values, where, origins)
+
+    def by_path(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """Put the paths that match a pattern in its place.
+
+        Args:
+            values: by dotted path, or by a pattern such as `actuators.*_knee.gear`.
+
+        Returns:
+            Values by path; a pattern that nothing matches stays.
+        """
+        return {
+            path: value
+            for pattern, value in values.items()
+            for path in parameters.matching(str(pattern), self.rules)
+        }
 
     def _replaced(
         self, values: Mapping[str, Any], where: str, origins: Mapping[str, Origin]

@@ -14,6 +14,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from functools import cache
 from types import MappingProxyType
 from typing import Any, TypeVar
@@ -270,6 +271,20 @@ def some(names: Iterable[str]) -> str:
         dict.fromkeys(f"{name.partition('.')[0]}.*" if "." in name else name for name in names)
     )
     return ", ".join(sections if 1 < len(sections) <= MOST_NAMES else [*names[:MOST_NAMES], "..."])
+
+
+def matching(path: str, names: Iterable[str]) -> list[str]:
+    """Find the paths that a pattern such as `actuators.*_knee.gear` stands for.
+
+    Args:
+        path: a dotted path, or a pattern in which `*` stands for any characters.
+        names: paths that exist.
+
+    Returns:
+        The paths that match; the path itself where it is no pattern, or where none does.
+    """
+    matches = [name for name in names if fnmatchcase(name, path)] if "*" in path else []
+    return matches or [path]
 
 
 def leaves(instance: Any, path: str = "") -> dict[str, Any]:

@@ -107,7 +107,8 @@ def read_axis(name: str, data: Any, base: RobotDesign, where: str, *, grid: bool
     """Read an axis as a sweep file describes it.
 
     Args:
-        name: key of the axis: a leaf's path, or any name where `paths` lists the leaves.
+        name: key of the axis: a leaf's path or a pattern of such paths, or any name where `paths`
+            lists paths and patterns.
         data: `{values: [...]}`, `{low, high, steps, log}`, or `{scale: ...}` with either inside;
             `steps` makes a range a list of levels, which a grid needs.
         base: design whose leaves it moves.
@@ -154,14 +155,14 @@ def _paths(
 ) -> tuple[str, ...]:
     rules = base.rules
     if "paths" not in data:
-        if name not in rules:
+        paths = parameters.matching(name, rules)
+        if paths[0] not in rules:
             remedy = (
                 parameters.unknown(name, sorted(rules))
                 if "." in name
                 else "names no leaf of a design; list the leaves it moves under paths"
             )
             raise InputError(where, place, dict(data), remedy)
-        paths = [name]
     else:
         paths = data["paths"]
         if (
@@ -176,6 +177,7 @@ def _paths(
                 paths,
                 "expects a list of different leaves such as [thigh.length, shank.length]",
             )
+        paths = list(dict.fromkeys(p for path in paths for p in parameters.matching(path, rules)))
         for path in paths:
             if path not in rules:
                 raise InputError(

@@ -239,6 +239,14 @@ def test_with_values_names_a_path_that_is_no_leaf(path, word):
         parameters.with_values(Whole(part=Part(length=1), mass=1), {path: 1.0}, "override")
 
 
+def test_a_pattern_matches_across_dots_and_a_path_is_itself():
+    names = ["a.left.gear", "a.right.gear", "b.left.gear"]
+    assert parameters.matching("a.*.gear", names) == names[:2]
+    assert parameters.matching("*left*", names) == [names[0], names[2]]
+    assert parameters.matching("a.left.gear", names) == ["a.left.gear"]
+    assert parameters.matching("c.*", names) == ["c.*"]
+
+
 def test_an_error_does_not_list_a_hundred_names():
     many = [f"a{i}.b{j}" for i in range(5) for j in range(20)]
     assert parameters.some(many) == "a0.*, a1.*, a2.*, a3.*, a4.*"

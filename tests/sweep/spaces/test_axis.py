@@ -47,6 +47,19 @@ def test_several_paths_share_a_value():
     np.testing.assert_array_equal(found["actuators.ankle.gear"], [5, 9])
 
 
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [
+        ("actuators.hip_*.gear", {"values": [5, 9]}),
+        ("hips", {"paths": ["actuators.hip_*.gear", "actuators.hip_yaw.gear"], "values": [5, 9]}),
+    ],
+)
+def test_a_pattern_moves_every_leaf_that_matches_once(name, data):
+    axis = read(name, data)
+    assert axis.name == name
+    assert axis.paths == tuple(f"actuators.hip_{j}.gear" for j in ("yaw", "roll", "pitch"))
+
+
 def test_the_whole_catalogue():
     assert read("actuators.toe.motor", {"values": "catalogue"}).levels == tuple(sorted(catalogue()))
 
