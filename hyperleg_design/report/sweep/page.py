@@ -58,16 +58,19 @@ def sweep_content(result: SweepResult, name: str = "designs") -> list[Any]:
 
 
 def _explorer(result: SweepResult, name: str) -> Explorer:
-    """All designs, with the measures that the sweep draws or aims at."""
+    """All designs but rejected ones, with the measures that the sweep draws or aims at."""
     sweep = result.sweep
     wanted = dict.fromkeys((*sweep.objectives, *(chosen.measure for chosen in sweep.maps)))
     measured = (column for ranges in result.summary["range"].values() for column in ranges)
     columns = list(wanted or dict.fromkeys(measured))
-    table = result.columns(["variant", *(axis.name for axis in sweep.axes), *columns])
+    names = ["variant", "rejected", *(axis.name for axis in sweep.axes), *columns]
+    table = result.columns(names)
     front = np.zeros(len(table["variant"]), bool)
     if len(sweep.objectives) > 1:
         for rows in fronts_of(result)[1].values():
             front[rows] = True
+    robots = table["rejected"] == ""
+    table, front = {name: values[robots] for name, values in table.items()}, front[robots]
     labels = {column: measures.label(column) for column in columns}
     return explorer(sweep, table, labels, sweep.maps, front, name)
 

@@ -23,3 +23,16 @@ def test_the_page_stands_beside_the_table_and_is_whole_without_other_files(tmp_p
     assert html.count("plotly.js (basic - minified)") == 1
     assert '"toe.mass"' in html
     assert len(html) < 1_500_000
+
+
+def test_designs_that_make_no_robot_are_counted_and_not_drawn(tmp_path):
+    definition = {
+        "design": "teaching_leg",
+        "axes": {"links.shank.mass": {"values": [0.0, 0.3, 0.4]}},
+        "objectives": ["total_mass", "max_joint_torque.knee"],
+    }
+    result = run_sweep(sweep_from_mapping(definition), tmp_path / "out", progress=False)
+    assert sweep_report(result)["rejected"] == 1
+    html = (tmp_path / "out" / "index.html").read_text()
+    assert "1 of 3 combinations make no robot" in html
+    assert "2 designs" in html
