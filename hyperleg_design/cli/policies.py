@@ -55,6 +55,8 @@ class Train:
     processor."""
     overlay: str = ""
     """Overlay (`hyperleg gap apply`) whose effects the simulation gets; none by default."""
+    motors: Path | None = None
+    """Folder with motors of your own (NAME.yaml), beside the shipped ones."""
 
     def run(self) -> None:
         """Replace this process by the training.
@@ -66,7 +68,8 @@ class Train:
         """
         from hyperleg_design.learning import launch
         from hyperleg_design.simulation.layout import layout_of
-        from hyperleg_design.simulation.model import simulation_spec
+        from hyperleg_design.simulation.model import simulation_model
+        from hyperleg_design.simulation.stepping.standing import check_standing
         from hyperleg_design.simulation.tasks import load_task
 
         require("torch", "rsl_rl")
@@ -88,8 +91,10 @@ class Train:
         # What does not fit is an error here, before torch is loaded in a process of its own.
         robot = load_robot(self.design, overrides=self.set, overlays=self.set_file)
         task = load_task(self.task)
-        simulation_spec(task.posed(robot), task.physics)
-        task.check_robot(layout_of(robot), robot.name)
+        posed = task.posed(robot)
+        model, layout = simulation_model(posed, task.physics), layout_of(posed)
+        task.check_robot(layout, robot.name)
+        check_standing(model, layout, task.limits, robot.name)
         if not self.overlay:
             launch.run_here(arguments, self.threads)
         from hyperleg_design.gap.playback.overlay import read_overlay

@@ -17,6 +17,13 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.layout import Layout
 
 
+POSTURE = "default posture"
+"""What errors name as the field."""
+LEAN = 0.1
+"""How far from a narrow row of pads the centre of mass may be, over its height [-]: a robot on
+point feet cannot stand still anywhere, but it can catch itself with a step. 0.1 is 6 degrees."""
+
+
 def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: str) -> None:
     """Check that a robot can stand in its default posture.
 
@@ -28,7 +35,7 @@ def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: 
 
     Raises:
         InputError: its base would be under its feet or under the height that counts as fallen, or
-            its weight beside its soles.
+            its weight beside its soles (further than `LEAN` beside point feet).
     """
     import mujoco
 
@@ -37,7 +44,7 @@ def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: 
             f"the {layout.base} is no higher than the pads in the default posture; change "
             f"joints.*.default_deg"
         )
-        raise InputError(name, "", round(float(layout.default_height), 4), remedy)
+        raise InputError(name, POSTURE, round(float(layout.default_height), 4), remedy)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)
@@ -47,15 +54,18 @@ def check_standing(model: mujoco.MjModel, layout: Layout, limits: Limits, name: 
             f"the {layout.base} stands lower than a fall, {least:g} m; set limits.height or "
             f"limits.height_share of the task, or longer legs"
         )
-        raise InputError(name, "", round(height, 4), remedy)
+        raise InputError(name, POSTURE, round(height, 4), remedy)
     pads = np.array([data.geom(pad).xpos[:2] for pad in layout.pads])
-    middle = data.subtree_com[1][:2]
-    if np.any(middle < pads.min(0)) or np.any(middle > pads.max(0)):
+    begin, end, (*middle, above) = pads.min(0), pads.max(0), data.subtree_com[1]
+    beside = np.maximum(begin - middle, middle - end)
+    if np.any(beside > np.where(end - begin < LEAN * above, LEAN * above, 0.0)):
+        place, soles = (np.round(values, 3) + 0.0 for values in (middle, [begin, end]))
         remedy = (
-            "the centre of mass lies beside the soles in the default posture; change "
-            "joints.*.default_deg"
+            f"the centre of mass, x and y in m, lies beside the soles, which reach from "
+            f"{soles[0].tolist()} to {soles[1].tolist()}; change joints.*.default_deg, or "
+            f"posture_deg of the task"
         )
-        raise InputError(name, "", np.round(middle, 4).tolist(), remedy)
+        raise InputError(name, POSTURE, place.tolist(), remedy)
 
 
 def check_all_standing(
