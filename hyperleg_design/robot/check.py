@@ -14,6 +14,7 @@ import numpy as np
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError, shown
 from hyperleg_design.reading import read_yaml
+from hyperleg_design.robot.checks.check_housing import check_housing
 from hyperleg_design.robot.checks.check_mjcf import check_mjcf
 from hyperleg_design.robot.checks.check_urdf import check_urdf
 from hyperleg_design.robot.checks.finding import Finding
@@ -150,6 +151,7 @@ def _check_design_file(path: str | Path) -> list[Finding]:
     findings += _narrow_ranges(design)
     if isinstance(design, TreeDesign):
         findings += [f for rod in rod_ranges(design) for f in _rod_findings(rod)]
+        findings += check_housing(design)
     try:
         if isinstance(design, Design):
             LinkageModel.of(design)

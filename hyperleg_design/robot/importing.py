@@ -24,6 +24,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import transmission
+from hyperleg_design.robot.checks.check_housing import check_housing
 from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.described_file import FileJoint, FileRobot, read_robot
 from hyperleg_design.robot.models import leg_reflected_inertia
@@ -68,7 +69,7 @@ def import_robot(
         meshes: whether the meshes that a URDF names must be there.
 
     Returns:
-        The design, and what `lint` finds.
+        The design, and what `lint` and `check_housing` find.
 
     Raises:
         InputError: the file is no robot (see `described_file.read_robot`), a joint without a motor,
@@ -77,7 +78,7 @@ def import_robot(
     robot, motors = read_robot(path, meshes=meshes), Path(actuation)
     data, where = with_motor_paths(read_yaml(motors), motors.parent), short_name(motors)
     design = tree_design_from_mapping(design_mapping(robot, data, where), robot.name, where)
-    return design, lint(robot, design)
+    return design, [*lint(robot, design), *check_housing(design)]
 
 
 def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dict[str, Any]:
@@ -154,7 +155,7 @@ def _pads(robot: FileRobot, given: Mapping[str, Any], where: str) -> dict[str, A
     with a radius, for a sphere at the origin of each that has none.
 
     Raises:
-        InputError: a pattern that matches no link with colliding spheres.
+        InputError: a pattern that matches no link, or none with colliding spheres.
     """
     mapping: dict[str, Any] = {}
     for name, held in given.items():
@@ -165,6 +166,9 @@ def _pads(robot: FileRobot, given: Mapping[str, Any], where: str) -> dict[str, A
         origin = ((np.zeros(3), 0.0),) if "radius" in (held or {}) else ()
         spheres = {link: robot.links[link].spheres or origin for link in links}
         spheres = {link: own for link, own in spheres.items() if own}
+        if not links:
+            remedy = parameters.unknown(name, list(robot.links), "link")
+            raise InputError(where, f"pads.{name}", None, remedy)
         if not spheres:
             known = parameters.some([n for n, link in robot.links.items() if link.spheres])
             remedy = (

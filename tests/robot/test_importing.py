@@ -227,6 +227,9 @@ def test_a_floating_joint_from_the_world_is_a_free_base(tmp_path):
 def test_pads_of_links_without_spheres(tmp_path):
     (tmp_path / "hopper.urdf").write_text(two_feet('<box size="0.1 0.1 0.1"/>'))
     motors = {"actuators": {"knee": {"motor": "RI60", "gear": 9}}, "pads": {"tip": {}}}
+    toe = actuation(tmp_path / "toe.yaml", **motors | {"pads": {"toe*": {"radius": 0.01}}})
+    with pytest.raises(InputError, match=r"pads\.toe\*: no such link; there are body, shank, tip"):
+        import_robot(tmp_path / "hopper.urdf", toe)
     with pytest.raises(InputError, match=r"pads\.tip.*no link of this name has a colliding sphere"):
         import_robot(tmp_path / "hopper.urdf", actuation(tmp_path / "m.yaml", **motors))
     motors["pads"] = {"tip": {"radius": 0.03}}

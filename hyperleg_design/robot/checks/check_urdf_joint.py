@@ -138,7 +138,10 @@ def _range(lower: float, upper: float, place: str, kind: str) -> list[Finding]:
     if kind == "revolute" and max(abs(lower), abs(upper)) > 2 * math.pi + 1e-6:
         return [
             Finding(
-                "warning", place, f"{shown}, more than a turn", "URDF takes radians, not degrees"
+                "warning",
+                place,
+                f"{shown}, more than a turn",
+                "check the unit: a URDF takes radians, a design's lower_deg and upper_deg degrees",
             )
         ]
     if not lower <= 0 <= upper:
