@@ -17,6 +17,7 @@ from hyperleg_design import cli
 ROOT = Path(hyperleg_design.__file__).resolve().parent.parent
 TUTORIALS = [
     *sorted((ROOT / "docs" / "tutorials").glob("*.md")),
+    ROOT / "docs" / "how-to" / "add_a_motor.md",
     ROOT / "docs" / "how-to" / "add_a_robot.md",
     ROOT / "docs" / "how-to" / "look_at_a_robot.md",
 ]

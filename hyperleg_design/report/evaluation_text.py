@@ -106,7 +106,7 @@ def evaluation_text(rows: Sequence[dict[str, Any]], *, everything: bool = False)
         key = tuple(row[name] for name in ("variant", "trained", "protocol", "design"))
         groups.setdefault(key, {})[row["measure"]] = row
     texts = []
-    for (variant, trained, protocol, _), own in groups.items():
+    for (variant, trained, protocol, design), own in groups.items():
         trials = next(iter(own.values()))
         ends = [
             f"{round(own[name]['mean'] * own[name]['trials'])} {name.replace('_', ' ')}"
@@ -117,7 +117,7 @@ def evaluation_text(rows: Sequence[dict[str, Any]], *, everything: bool = False)
         shown = list(own) if everything else [name for name in FIRST_READ if name in own]
         lacking = [name for name in shown if own[name]["mean"] is None]
         texts.append(
-            f"{variant}, {trained}, {protocol}: {', '.join([count, *ends])}\n"
+            f"{variant or design}, {trained}, {protocol}: {', '.join([count, *ends])}\n"
             + table(HEAD, [_cells(own[name]) for name in shown if name not in lacking])
         )
         if lacking:

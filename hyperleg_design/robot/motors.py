@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -71,8 +72,8 @@ def catalogue() -> dict[str, Motor]:
 @cache
 def _joined(shipped: Path, folders: str) -> dict[str, Motor]:
     motors = dict(_catalogue_at(shipped))
-    for text in filter(None, folders.split(os.pathsep)):
-        folder = Path(text)
+    named = {Path(text).resolve(): text for text in filter(None, folders.split(os.pathsep))}
+    for folder, text in named.items():
         if not folder.is_dir():
             raise InputError("--motors", "", text, "is no folder; expects one with motor files")
         own = _catalogue_at(folder)
@@ -80,9 +81,8 @@ def _joined(shipped: Path, folders: str) -> dict[str, Motor]:
             raise InputError("--motors", "", text, "holds no motor files (NAME.yaml)")
         for name in own:
             if name in motors:
-                raise InputError(
-                    "--motors", "", str(folder / f"{name}.yaml"), "is the name of another motor"
-                )
+                remedy = "is the name of another motor; rename the file"
+                raise InputError("--motors", "", str(folder / f"{name}.yaml"), remedy)
         motors |= own
     return motors
 
@@ -110,6 +110,16 @@ def use_folder(folder: str | Path) -> None:
         raise
 
 
+def folder_option() -> str:
+    """Write the folder that `use_folder` added last as an option of the command line.
+
+    Returns:
+        ` --motors FOLDER`, or nothing where only shipped motors are known.
+    """
+    folder = os.environ.get(FOLDERS, "").split(os.pathsep)[-1]
+    return f" --motors {shlex.quote(folder)}" if folder else ""
+
+
 def find_motor(name: str, where: str = "motors", field: str = "") -> Motor:
     """A motor by name, or of a file `PATH/NAME.yaml`.
 
@@ -132,7 +142,7 @@ def find_motor(name: str, where: str = "motors", field: str = "") -> Motor:
             where,
             field,
             name,
-            parameters.unknown(name, sorted(motors)).replace("such field", "such motor"),
+            f"{parameters.unknown(name, sorted(motors), 'motor')}; --motors FOLDER adds your own",
         )
     return motors[name]
 

@@ -13,6 +13,7 @@ from hyperleg_design.evaluation.measures import OUTCOMES
 from hyperleg_design.evaluation.result import counted
 from hyperleg_design.evaluation.statistics import estimate, share
 from hyperleg_design.robot.load import design_argument
+from hyperleg_design.robot.motors import folder_option
 from hyperleg_design.sweep import registry
 from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.spaces.definition import AS_DESCRIBED, Sweep
@@ -304,7 +305,7 @@ def build_command(sweep: Sweep, row: Mapping[str, Any]) -> str:
     base = f"--design {design_argument(sweep.base)}"
     if row["variant"] != AS_DESCRIBED:
         base += f" --variant {row['variant']}"
-    return f"hyperleg build {base} {changes} --out built"
+    return f"hyperleg build {base}{folder_option()} {changes} --out built"
 
 
 def _yaml(value: Any) -> str:

@@ -60,3 +60,8 @@ def test_every_protocol_and_variant_has_a_table_of_its_own():
         "toe_locked, specialist, walk: 10 trials, 5 arrived",
         "toe, specialist, t_test: 10 trials, 2 arrived",
     ]
+
+
+def test_a_robot_without_variants_is_named():
+    text = evaluation_text([row("arrived", 1.0, variant="")])
+    assert text.startswith("hyperleg, specialist, walk: 10 trials, 10 arrived")

@@ -143,7 +143,7 @@ def test_a_design_with_a_broken_motor_names_the_motors_file(own_folder):
 @pytest.fixture
 def own_folder(tmp_path, monkeypatch):
     """A folder with one motor of the user's: RI70 under another name, twice as strong."""
-    monkeypatch.delenv(motors.FOLDERS, raising=False)
+    monkeypatch.setenv(motors.FOLDERS, "")
     source = resources.find("motors", "RI70").read_text()
     folder = tmp_path / "mine"
     folder.mkdir()
@@ -151,8 +151,7 @@ def own_folder(tmp_path, monkeypatch):
     data["constants"]["peak_torque"]["value"] *= 2
     data.pop("presets", None)
     (folder / "Mine.yaml").write_text(yaml.safe_dump(data))
-    yield folder
-    monkeypatch.delenv(motors.FOLDERS, raising=False)
+    return folder
 
 
 def test_motors_of_a_folder_are_in_the_catalogue_of_this_and_other_processes(own_folder):
@@ -175,6 +174,15 @@ def test_a_path_is_a_motor(own_folder):
     assert peak[3] == motors.load_motor(own_folder / "Mine.yaml").peak_torque("vendor")
     with pytest.raises(InputError, match="no such motor file"):
         load_design("hyperleg", overrides={"actuators.knee.motor": str(own_folder / "No.yaml")})
+
+
+def test_a_folder_may_be_named_twice_and_is_named_in_commands(own_folder, monkeypatch):
+    assert motors.folder_option() == ""
+    monkeypatch.chdir(own_folder.parent)
+    monkeypatch.setenv(motors.FOLDERS, own_folder.name)  # relative, and again with its full path
+    motors.use_folder(own_folder)
+    assert "Mine" in catalogue()
+    assert motors.folder_option() == f" --motors {own_folder}"
 
 
 def test_wrong_folders_are_one_clear_error_and_change_nothing(own_folder, tmp_path):

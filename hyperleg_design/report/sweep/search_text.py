@@ -42,7 +42,8 @@ def search_text(search: Search, study: optuna.Study) -> str:
         for row in rows
     ]
     heads = ["design", "variant", *axes, *search.objectives, "policy is"]
-    note = "candidates, in the order of the first objective; their values are the best of many"
+    note = "candidates, in the order of the first objective"
+    note += "; their values are the best of many" if search.plan.protocols else ""
     return "\n".join([*lines, table(heads, cells), note])
 
 
@@ -60,7 +61,8 @@ def final_text(search: Search, final: Final) -> str:
         return "no finalist: no design holds all constraints"
     cells = []
     for finalist in final.finalists:
-        stages = [("search", finalist.searched), ("new trials", finalist.before)]
+        stages = [("search", finalist.searched)]
+        stages += [("new trials", finalist.before)] if search.plan.protocols else []
         stages += [] if finalist.after is None else [("fine-tuned", finalist.after)]
         for name, row in stages:
             values = [_with_interval(row, objective) for objective in search.objectives]

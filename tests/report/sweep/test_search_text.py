@@ -86,6 +86,15 @@ def test_fine_tuned_values_replace_those_of_new_trials(search):
     assert "--finetune" not in text
 
 
+def test_measures_without_trials_stand_once(search):
+    search.plan.protocols = ()
+    first = Finalist(1, row(0.30), row(0.30), None)
+    text = search_text.final_text(search, Final((first,), (1,), 0))
+    assert "new trials" not in text
+    assert text.count("0.3") == 1
+    assert "winner: design 1\n" in text
+
+
 def test_no_finalist_and_no_winner_are_told_apart(search):
     assert "no finalist" in search_text.final_text(search, Final((), (), 0))
     fallen = Finalist(1, row(0.3), row(0.3, fell=0.5), None)
