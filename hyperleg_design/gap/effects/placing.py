@@ -326,7 +326,7 @@ def motor_strength(subject: Subject, motor: int) -> float:
     Returns:
         The torque [Nm].
     """
-    if np.isfinite(subject.torque_limit[motor]):
+    if 0 < subject.torque_limit[motor] < np.inf:
         return float(subject.torque_limit[motor])
     column = np.abs(subject.joint_from_motor[:, motor])
     used = column > 0

@@ -39,7 +39,8 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
     spec = robot_file.read_spec(path)
     imu_site = robot_file.imu_site(spec)
     base = robot_file.set_base(spec, base, path)
-    notes = robot_file.strip_scene(spec, path, contact=base == "floating")
+    stands = base == "floating" or robot_file.has_floor(spec)
+    notes = robot_file.strip_scene(spec, path, contact=stands)
     every = [j.name for j in spec.joints]
     kept = robot_file.kept_joints(every, known, path.name)
     whole = robot_file.compiled(spec, path)
@@ -50,7 +51,7 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
     )
     robot_file.strip_drives(spec)
     held = robot_file.lock(spec, kept)
-    if base == "floating":
+    if stands:
         robot_file.add_floor(spec)
     first = robot_file.compiled(spec, path)
     tree = mechanism_of(first)
@@ -76,7 +77,7 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
     names = tuple(n for n, u in zip(drives.names, used, strict=True) if u)
     aliases = tuple(n for n, u in zip(drives.aliases, used, strict=True) if u)
     unlimited = np.full(len(names), np.inf)
-    feet, pads = feet_of(model, tree) if base == "floating" else ((), ())
+    feet, pads = feet_of(model, tree) if stands else ((), ())
     imu_rotation, imu_position = robot_file.imu_place(model, imu_site)
     subject = assembled(
         name=path.stem,

@@ -308,6 +308,23 @@ def imu_place(model: Any, site: str) -> tuple[np.ndarray, np.ndarray]:
     return quaternion_rotation(model.site_quat[index]), np.array(model.site_pos[index])
 
 
+def has_floor(spec: Any) -> bool:
+    """Decide whether the world has a plane that shapes can touch.
+
+    Args:
+        spec: the specification.
+
+    Returns:
+        True if it has.
+    """
+    import mujoco
+
+    return any(
+        g.type == mujoco.mjtGeom.mjGEOM_PLANE and (g.contype or g.conaffinity)
+        for g in spec.worldbody.geoms
+    )
+
+
 def add_floor(spec: Any) -> None:
     """Add a floor at z = 0 where the world has no plane.
 
@@ -316,7 +333,7 @@ def add_floor(spec: Any) -> None:
     """
     import mujoco
 
-    if not any(g.type == mujoco.mjtGeom.mjGEOM_PLANE for g in spec.worldbody.geoms):
+    if not has_floor(spec):
         spec.worldbody.add_geom(
             name="gap_floor",
             type=mujoco.mjtGeom.mjGEOM_PLANE,

@@ -144,6 +144,13 @@ def condition(log: Log, subject: Subject) -> Signals:
     )
     if measured is not None and limited is not None:
         residual["drive"] = measured - limited
+        copied = ~np.nan_to_num(residual["drive"]).any(0)
+        residual["drive"][:, copied] = np.nan
+        if (copied := copied & _driven(subject)).any():
+            notes.append(
+                f"motors whose measured torques repeat their commands, so that nothing tells what "
+                f"their drives do: {', '.join(np.array(subject.motors)[copied])}"
+            )
     if control is not None:
         residual["control"] = control
     if (

@@ -244,7 +244,7 @@ def next_steps(diagnosis: Entry) -> list[tuple[str, str]]:
         steps.append(
             (
                 "Add what was named to the simulation, and replay a log that was not used here:",
-                "hyperleg gap apply FOLDER --logs OTHER_LOG --out overlay.yaml",
+                "hyperleg gap apply FOLDER --robot ROBOT --logs OTHER_LOG --out overlay.yaml",
             )
         )
     referred = bool(diagnosis.get("provenance", {}).get("reference"))

@@ -23,6 +23,21 @@ def test_servos_of_a_foreign_arm(robot_files):
     assert np.isinf(subject.position_high[1])
 
 
+@pytest.mark.parametrize("floor", [True, False])
+def test_a_leg_on_a_rail_has_a_foot_where_its_file_has_a_floor(tmp_path, floor):
+    plane = '<geom type="plane" size="1 1 1"/>' if floor else ""
+    text = f"""<mujoco><worldbody>{plane}<body name="carriage" pos="0 0 0.5">
+      <joint name="rail" type="slide" axis="0 0 1"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+      <body name="leg"><joint name="hip" axis="0 1 0"/><inertial pos="0 0 -0.1" mass="1" diaginertia="1 1 1"/>
+      <geom name="sole" size="0.02" pos="0 0 -0.3"/></body></body></worldbody></mujoco>"""  # noqa: E501
+    (tmp_path / "rail.xml").write_text(text)
+    subject = load_subject(tmp_path / "rail.xml")
+    assert (subject.base, subject.joints) == ("fixed", ("rail", "hip"))
+    assert (subject.feet, [pad.name for pad in subject.pads]) == (
+        (("leg",), ["sole"]) if floor else ((), [])
+    )
+
+
 def test_gears_fold_into_the_joint(tmp_path):
     text = """<mujoco><worldbody><body><joint name="j"/><geom size="0.1"/></body></worldbody><actuator>
       <motor name="m" joint="j" gear="20" ctrlrange="-2 2"/></actuator></mujoco>"""  # noqa: E501

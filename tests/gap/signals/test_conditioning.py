@@ -36,6 +36,26 @@ def test_drive_balance_of_a_servo_is_nothing(robot_files, runs):
     np.testing.assert_allclose(signals.residual["drive"], 0, atol=1e-9)
 
 
+def test_a_drive_of_which_nothing_is_measured_has_no_residual(tmp_path):
+    path = tmp_path / "passive.xml"  # nothing drives the knee
+    path.write_text(
+        robots.GEARED.replace('<motor name="b" joint="knee" gear="-6" ctrlrange="-8 8"/>', "")
+    )
+    log = robots.without(robots.geared_run("joint", ("hip", "knee")), "motor_velocity")
+    log = robots.without(log, "motor_torque_command")
+    torque = log.signals["motor_torque/hip"]
+    copied = log.changed(signals=log.signals | {"motor_torque_command/hip": torque})
+    noisy = torque + 0.1 * np.random.default_rng(0).standard_normal(len(torque))
+    measured = log.changed(signals=log.signals | {"motor_torque_command/hip": noisy})
+    signals = condition(measured, load_subject(path, [measured]))
+    assert np.isfinite(signals.residual["drive"][:, 0]).any()
+    assert np.isnan(signals.residual["drive"][:, 1]).all()
+    assert not any("repeat their commands" in note for note in signals.notes)
+    signals = condition(copied, load_subject(path, [copied]))
+    assert np.isnan(signals.residual["drive"]).all()
+    assert any("repeat their commands" in note and "hip" in note for note in signals.notes)
+
+
 def test_wrong_gains_show_in_the_drive_and_wrong_payload_in_the_motion(robot_files, runs):
     log = runs["arm"]
     wrong = log.changed(metadata=Metadata(gains={"elbow": (1500.0, 150.0)}))
