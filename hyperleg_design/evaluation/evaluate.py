@@ -18,10 +18,10 @@ from hyperleg_design.evaluation.protocol import (
     protocol_from_mapping,
     protocol_mapping,
 )
-from hyperleg_design.evaluation.protocols.protocol_run import ProtocolRun
 from hyperleg_design.evaluation.protocols.t_test import t_test_run
 from hyperleg_design.evaluation.protocols.walk import walk_run
 from hyperleg_design.evaluation.result import Evaluation, evaluations_of
+from hyperleg_design.evaluation.rollout import ProtocolRun
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 

@@ -21,7 +21,7 @@ from hyperleg_design.evaluation.motion.steps import (
 )
 from hyperleg_design.evaluation.protocol import TTestProtocol
 from hyperleg_design.evaluation.protocols import course
-from hyperleg_design.evaluation.protocols.protocol_run import ProtocolRun
+from hyperleg_design.evaluation.rollout import ProtocolRun
 from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 from hyperleg_design.sizing.energy import cost_of_transport
 

@@ -22,7 +22,7 @@ from hyperleg_design.evaluation.motion.steps import (
 )
 from hyperleg_design.evaluation.protocol import WalkProtocol
 from hyperleg_design.evaluation.protocols import course
-from hyperleg_design.evaluation.protocols.protocol_run import Measured, ProtocolRun
+from hyperleg_design.evaluation.rollout import Measured, ProtocolRun
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.simulation.commands import VelocityCommands
 from hyperleg_design.sizing.energy import cost_of_transport

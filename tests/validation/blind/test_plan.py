@@ -3,7 +3,7 @@ from collections import Counter
 import pytest
 
 from hyperleg_design.validation.blind.plan import KINDS, ONE_JOINT_CANNOT, plan_cases
-from hyperleg_design.validation.blind.wrong import CATALOGUE, ODDITIES, SIZES, WALKING_ONLY
+from hyperleg_design.validation.blind.wrong import CATALOGUE, ODDITIES, WALKING_ONLY
 
 
 def test_the_same_seed_draws_the_same_cases():
@@ -32,7 +32,3 @@ def test_plants_can_be_kept_apart():
     assert {p.plant for p in plan_cases(30, 0, plants=("other",))} == {"other"}
     with pytest.raises(ValueError, match="choose of"):
         plan_cases(3, 0, plants=("moon",))
-
-
-def test_every_effect_of_the_rigs_has_a_size():
-    assert set(SIZES) == (set(CATALOGUE) - set(WALKING_ONLY)) | set(ODDITIES)
