@@ -19,13 +19,13 @@ BARRED = {"found", "told", "one", "kept", "made", "says"}
 FEWEST_WORDS = 3
 """Words that the first paragraph of a public docstring has at least."""
 NAMES_ALLOWED = {
-    "evaluation": 10,
+    "evaluation": 9,
     "gap": 451,
-    "report": 10,
+    "report": 9,
     "robot": 1,
     "simulation": 6,
     "sweep": 4,
-    "validation": 52,
+    "validation": 47,
 }
 """Bindings of barred names that are left, by package; lower a number when you rename some."""
 DOCSTRINGS_ALLOWED = {"gap": 1}
