@@ -93,106 +93,24 @@ def least_heat(
         InfeasibleError: `allow_excess` is off and some sample cannot be done; says when and what is
         missing.
     """
-    import cvxpy as cp
-    from scipy import sparse
-
-    count, size = required.shape
-    legs, motors = lower.shape[-2:]
-    joints = (size - 6) // legs
-    pads = bears.shape[1]
-    if (
-        contact_jacobian.shape != (count, pads, 3, size)
-        or matrix.shape != (joints, motors)
-        or upper.shape != lower.shape
-    ):
-        shapes = [
-            required.shape,
-            contact_jacobian.shape,
-            bears.shape,
-            matrix.shape,
-            lower.shape,
-            upper.shape,
-        ]
-        raise InputError(
-            "allocation",
-            "shapes",
-            shapes,
-            "expects (n, 6 + legs joints), (n, pads, 3, ...), (n, pads), (joints, motors), limits",
-        )
-    if not (friction > 0 and weight > 0):
-        raise InputError("allocation", "friction, weight", (friction, weight), "must be positive")
-
-    peak = np.maximum(np.max(np.maximum(np.abs(lower), np.abs(upper)), (0, 1)), 1e-9)
-    row_scale = np.concatenate(
-        [np.full(6, weight), np.full(size - 6, np.max(np.abs(matrix) @ peak))]
+    _check(required, contact_jacobian, bears, matrix, lower, upper, friction, weight)
+    count, (legs, motors) = len(required), lower.shape[-2:]
+    scaled = _scaled(
+        required, contact_jacobian, bears, matrix, lower, upper, power_constant, weight
     )
-    drives = np.zeros((size, legs * motors))
-    for leg in range(legs):
-        drives[6 + leg * joints : 6 + (leg + 1) * joints, leg * motors : (leg + 1) * motors] = (
-            matrix * peak
-        )
-    blocks = [
-        np.swapaxes(contact_jacobian[n, bears[n]].reshape(-1, size), 0, 1)
-        * weight
-        / row_scale[:, None]
-        for n in range(count)
-    ]
-    loads = (
-        sparse.block_diag(blocks, format="csr")
-        if np.any(bears)
-        else sparse.csr_matrix((count * size, 0))
-    )
-    torques = sparse.kron(sparse.eye(count), drives / row_scale[:, None], format="csr")
-    base = sparse.kron(sparse.eye(count), np.eye(size)[:, :6], format="csr")
-    target = (required / row_scale).ravel()
-    share = np.tile(power_constant * peak**2, legs)
-    share = np.tile(share / share.sum(), count)
-    lowest, highest = (lower / peak).ravel(), (upper / peak).ravel()
-
-    torque = cp.Variable(count * legs * motors)
-    cost = cp.sum_squares(cp.multiply(np.sqrt(share), torque))
-    balance, cones = torques @ torque, []
-    active = int(np.sum(bears))
-    force = cp.Variable((active, 3)) if active else None
-    if force is not None:
-        balance = balance + loads @ cp.reshape(force, (3 * active,), order="C")
-        cones.append(cp.SOC(friction * force[:, 2], force[:, :2].T, axis=0))
-        cost = cost + RIDGE * cp.sum_squares(force)
-    gap, beyond = np.zeros((count, 6)), np.zeros((count, legs, motors))
-    if not _solved(
-        cp.Problem(
-            cp.Minimize(cost), [balance == target, torque <= highest, torque >= lowest, *cones]
-        )
-    ):
-        excess = cp.Variable(count * legs * motors, nonneg=True)
-        short, over = cp.Variable(count * 6, nonneg=True), cp.Variable(count * 6, nonneg=True)
-        cost = cost + EXCESS_PRICE * cp.sum(excess) + GAP_PRICE * cp.sum(short + over)
-        limits = [torque <= highest + excess, torque >= lowest - excess, *cones]
-        if not _solved(
-            cp.Problem(cp.Minimize(cost), [balance + base @ (short - over) == target, *limits])
-        ):
-            raise InfeasibleError(
-                "the allocation has no solution that the solver finds; the motion's forces are far "
-                "beyond the robot"
-            )
-        gap = (short.value - over.value).reshape(count, 6)
-        gap = np.where(np.abs(gap) > NEGLIGIBLE, gap, 0.0)
-        beyond = excess.value.reshape(count, legs, motors)
-        beyond = np.where(beyond > NEGLIGIBLE, beyond, 0.0) * peak
+    forces, torques, excess, gap = _solution(scaled, friction)
+    peak = scaled.peak
+    beyond = excess.reshape(count, legs, motors) * peak
     if not allow_excess and (np.any(gap) or np.any(beyond)):
         worst = int(np.argmax(np.abs(gap).max(1) * 1e6 + (beyond / peak).max((1, 2))))
         raise InfeasibleError(
-            f"sample {worst} of {count} is beyond the robot: motors miss {beyond[worst].max():.3g} "
-            f"Nm, "
-            f"the base {np.abs(gap[worst]).max() * weight:.3g} N or Nm"
+            f"sample {worst} of {count} is beyond the robot: motors miss "
+            f"{beyond[worst].max():.3g} Nm, the base {np.abs(gap[worst]).max() * weight:.3g} N or "
+            "Nm"
         )
-    forces = np.zeros((count, pads, 3))
-    given = torque.value.reshape(count, legs * motors)
-    if force is not None:
-        forces[bears] = force.value
-    _polish(forces, given, gap, bears, blocks, drives / row_scale[:, None], required / row_scale)
+    _polish(scaled, forces, torques, gap)
     forces, gap = forces * weight, gap * weight
-    motor_torque = given.reshape(count, legs, motors) * peak
+    motor_torque = torques.reshape(count, legs, motors) * peak
     return Allocation(
         contact_force=forces,
         motor_torque=motor_torque,
@@ -201,6 +119,148 @@ def least_heat(
         heat=np.sum(power_constant * motor_torque**2, (1, 2)),
         residual=_residual(required, contact_jacobian, forces, motor_torque, gap, matrix),
     )
+
+
+def _check(
+    required: np.ndarray,
+    jacobian: np.ndarray,
+    bears: np.ndarray,
+    matrix: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    friction: float,
+    weight: float,
+) -> None:
+    """Refuse shapes that do not fit, and a friction or weight that is not positive."""
+    count, size = required.shape
+    joints = (size - 6) // lower.shape[-2]
+    if (
+        jacobian.shape != (count, bears.shape[1], 3, size)
+        or matrix.shape != (joints, lower.shape[-1])
+        or upper.shape != lower.shape
+    ):
+        raise InputError(
+            "allocation",
+            "shapes",
+            [array.shape for array in (required, jacobian, bears, matrix, lower, upper)],
+            "expects (n, 6 + legs joints), (n, pads, 3, ...), (n, pads), (joints, motors), limits",
+        )
+    if not (friction > 0 and weight > 0):
+        raise InputError("allocation", "friction, weight", (friction, weight), "must be positive")
+
+
+@dataclass(frozen=True, eq=False)
+class _Scaled:
+    """The problem in motor torques over peak torque and pad forces over body weight, so that all
+    unknowns are of order one; rows of the equations are scaled alike.
+    """
+
+    bears: np.ndarray
+    """Whether a pad may bear load, `(n, pads)`."""
+    blocks: list[np.ndarray]
+    """What the forces on the bearing pads give each row, one `(rows, 3 bearing pads)` a sample."""
+    drives: np.ndarray
+    """What the motors give each row, `(rows, legs * motors)`."""
+    target: np.ndarray
+    """What the motion requires of each row, `(n, rows)`."""
+    lower: np.ndarray
+    """Least motor torques, `(n * legs * motors,)`."""
+    upper: np.ndarray
+    """Largest motor torques, `(n * legs * motors,)`."""
+    share: np.ndarray
+    """Heat of a motor at its peak torque over that of all motors, over all samples, `(n * legs *
+    motors,)`."""
+    peak: np.ndarray
+    """Peak torques [Nm], `(motors,)`."""
+
+
+def _scaled(
+    required: np.ndarray,
+    jacobian: np.ndarray,
+    bears: np.ndarray,
+    matrix: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    power_constant: np.ndarray,
+    weight: float,
+) -> _Scaled:
+    count, size = required.shape
+    legs, motors = lower.shape[-2:]
+    joints = (size - 6) // legs
+    peak = np.maximum(np.max(np.maximum(np.abs(lower), np.abs(upper)), (0, 1)), 1e-9)
+    row_scale = np.concatenate(
+        [np.full(6, weight), np.full(size - 6, np.max(np.abs(matrix) @ peak))]
+    )
+    drives = np.zeros((size, legs * motors))
+    for leg in range(legs):
+        rows = slice(6 + leg * joints, 6 + (leg + 1) * joints)
+        drives[rows, leg * motors : (leg + 1) * motors] = matrix * peak
+    share = np.tile(power_constant * peak**2, legs)
+    return _Scaled(
+        bears=bears,
+        blocks=[
+            np.swapaxes(jacobian[n, bears[n]].reshape(-1, size), 0, 1) * weight / row_scale[:, None]
+            for n in range(count)
+        ],
+        drives=drives / row_scale[:, None],
+        target=required / row_scale,
+        lower=(lower / peak).ravel(),
+        upper=(upper / peak).ravel(),
+        share=np.tile(share / share.sum(), count),
+        peak=peak,
+    )
+
+
+def _solution(
+    scaled: _Scaled, friction: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Pad forces `(n, pads, 3)`, motor torques `(n, legs * motors)`, torques beyond the envelopes
+    `(n, legs * motors)` and what the base misses `(n, 6)`, all scaled.
+
+    Only where envelopes and contacts do not allow the motion may they give way.
+    """
+    import cvxpy as cp
+    from scipy import sparse
+
+    count, size = scaled.target.shape
+    motors, active = scaled.drives.shape[1], int(np.sum(scaled.bears))
+    torque = cp.Variable(count * motors)
+    cost = cp.sum_squares(cp.multiply(np.sqrt(scaled.share), torque))
+    balance = sparse.kron(sparse.eye(count), scaled.drives, format="csr") @ torque
+    cones: list[Any] = []
+    force = cp.Variable((active, 3)) if active else None
+    if force is not None:
+        loads = sparse.block_diag(scaled.blocks, format="csr")
+        balance = balance + loads @ cp.reshape(force, (3 * active,), order="C")
+        cones.append(cp.SOC(friction * force[:, 2], force[:, :2].T, axis=0))
+        cost = cost + RIDGE * cp.sum_squares(force)
+    target, lower, upper = scaled.target.ravel(), scaled.lower, scaled.upper
+    gap, beyond = np.zeros((count, 6)), np.zeros((count, motors))
+    limits = [balance == target, torque <= upper, torque >= lower, *cones]
+    if not _solved(cp.Problem(cp.Minimize(cost), limits)):
+        excess = cp.Variable(count * motors, nonneg=True)
+        short, over = cp.Variable(count * 6, nonneg=True), cp.Variable(count * 6, nonneg=True)
+        cost = cost + EXCESS_PRICE * cp.sum(excess) + GAP_PRICE * cp.sum(short + over)
+        base = sparse.kron(sparse.eye(count), np.eye(size)[:, :6], format="csr")
+        limits = [
+            balance + base @ (short - over) == target,
+            torque <= upper + excess,
+            torque >= lower - excess,
+            *cones,
+        ]
+        if not _solved(cp.Problem(cp.Minimize(cost), limits)):
+            raise InfeasibleError(
+                "the allocation has no solution that the solver finds; the motion's forces are far "
+                "beyond the robot"
+            )
+        gap = (short.value - over.value).reshape(count, 6)
+        gap = np.where(np.abs(gap) > NEGLIGIBLE, gap, 0.0)
+        beyond = excess.value.reshape(count, motors)
+        beyond = np.where(beyond > NEGLIGIBLE, beyond, 0.0)
+    forces = np.zeros((*scaled.bears.shape, 3))
+    if force is not None:
+        forces[scaled.bears] = force.value
+    return forces, torque.value.reshape(count, motors), beyond, gap
 
 
 def _solved(problem: Any) -> bool:
@@ -216,26 +276,18 @@ def _solved(problem: Any) -> bool:
     return problem.status in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE)
 
 
-def _polish(
-    forces: np.ndarray,
-    given: np.ndarray,
-    gap: np.ndarray,
-    bears: np.ndarray,
-    blocks: list[np.ndarray],
-    drives: np.ndarray,
-    target: np.ndarray,
-) -> None:
+def _polish(scaled: _Scaled, forces: np.ndarray, torques: np.ndarray, gap: np.ndarray) -> None:
     """Move forces and torques, in place, by the least that closes the equations to rounding; the
     solver leaves 1e-8.
     """
-    for n, block in enumerate(blocks):
-        count = block.shape[1]
-        both = np.hstack([block, drives])
-        now = np.concatenate([forces[n, bears[n]].ravel(), given[n]])
-        miss = target[n] - both @ now
+    for n, block in enumerate(scaled.blocks):
+        count, bears = block.shape[1], scaled.bears[n]
+        both = np.hstack([block, scaled.drives])
+        now = np.concatenate([forces[n, bears].ravel(), torques[n]])
+        miss = scaled.target[n] - both @ now
         miss[:6] -= gap[n]
         now = now + np.linalg.lstsq(both, miss, rcond=None)[0]
-        forces[n, bears[n]], given[n] = now[:count].reshape(-1, 3), now[count:]
+        forces[n, bears], torques[n] = now[:count].reshape(-1, 3), now[count:]
 
 
 def _residual(
@@ -246,6 +298,7 @@ def _residual(
     gap: np.ndarray,
     matrix: np.ndarray,
 ) -> float:
+    """Largest miss of the equations of motion [N or Nm]."""
     wrench = np.einsum("npiv,npi->nv", jacobian, forces)
     wrench[:, :6] += gap
     wrench[:, 6:] += np.einsum("jm,nlm->nlj", matrix, motor_torque).reshape(len(required), -1)

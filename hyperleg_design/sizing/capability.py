@@ -29,6 +29,7 @@ from hyperleg_design.robot.transmission import (
     motor_velocity,
 )
 from hyperleg_design.robot.trees.tree_design import TreeDesign
+from hyperleg_design.robot.trees.tree_limb import skew
 from hyperleg_design.sizing.contacts import TIP, contact_kinematics, contact_points, sole_pads
 from hyperleg_design.sizing.envelope import motor_envelope, torque_limits
 from hyperleg_design.sizing.kinematics import (
@@ -181,140 +182,167 @@ def largest_force(
         InfeasibleError: no contact force holds the leg, or the bones carry any force: a straight
         leg has no largest one.
     """
-    import cvxpy as cp
+    _check_question(design, direction, side, vertical)
+    model = model or rigid_body_model(design)
+    push = _push(design, model, q, direction, side, joint_velocity)
+    pad_force, torque = _extreme(push, upright, vertical)
+    return _contact_force(push, pad_force, torque)
 
+
+def _check_question(design: RobotDesign, direction: str, side: str, vertical: float | None) -> None:
+    where, sides = "capability", design.copies
     if direction not in DIRECTIONS:
-        raise InputError(
-            "capability", "direction", direction, f"expects one of {', '.join(DIRECTIONS)}"
-        )
-    sides = design.copies
+        raise InputError(where, "direction", direction, f"expects one of {', '.join(DIRECTIONS)}")
     if side not in sides:
-        raise InputError("capability", "side", side, f"expects one of {', '.join(sides)}")
+        raise InputError(where, "side", side, f"expects one of {', '.join(sides)}")
     if vertical is not None and not (
         np.isfinite(vertical) and vertical > 0 and direction == "forward"
     ):
-        raise InputError(
-            "capability",
-            "vertical",
-            vertical,
-            "expects a positive force in N, with the forward direction",
-        )
-    model = model or rigid_body_model(design)
-    if isinstance(q, str):
-        q = posture(design, q, model)
-    q = np.asarray(q, float)
-    joints = len(joint_names(design))
-    if q.shape != (model.model.nq,) or not np.all(np.isfinite(q)):
-        raise InputError(
-            "capability", "q", q.shape, f"expects finite numbers, shape ({model.model.nq},)"
-        )
-    speed = np.zeros(joints) if joint_velocity is None else np.asarray(joint_velocity, float)
-    if speed.shape != (joints,) or not np.all(np.isfinite(speed)):
-        raise InputError(
-            "capability",
-            "joint_velocity",
-            speed.shape,
-            f"expects finite numbers, shape ({joints},)",
-        )
+        remedy = "expects a positive force in N, with the forward direction"
+        raise InputError(where, "vertical", vertical, remedy)
 
-    weight = GRAVITY * model.tree.mass
-    base = model.base_dof
-    columns = slice(base + sides.index(side) * joints, base + (sides.index(side) + 1) * joints)
+
+@dataclass(frozen=True, eq=False)
+class _Push:
+    """A leg that pushes on the floor, in one posture."""
+
+    design: RobotDesign
+    direction: str
+    side: str
+    model: RigidBodyModel
+    q: np.ndarray
+    """Configuration, `(nq,)`."""
+    link: str
+    """Link from whose origin the centre of pressure is measured."""
+    touching: np.ndarray
+    """Numbers of the pads that touch the floor, `(k,)`."""
+    points: np.ndarray
+    """Where they touch it [m], `(k, 3)`."""
+    jacobian: np.ndarray
+    """Velocity of these points over the leg's joint velocities, transposed, `(joints, 3 k)`."""
+    gravity: np.ndarray
+    """Joint torques that hold the leg's own links [Nm], `(joints,)`."""
+    lower: np.ndarray
+    """Least motor torques [Nm], `(motors,)`."""
+    upper: np.ndarray
+    """Largest motor torques [Nm], `(motors,)`."""
+
+    @property
+    def weight(self) -> float:
+        """Weight of the robot [N]."""
+        return GRAVITY * self.model.tree.mass
+
+    @property
+    def friction(self) -> float:
+        """Friction of the pads on the floor [-]."""
+        return float(self.design.contact_section.friction)
+
+
+def _push(
+    design: RobotDesign,
+    model: RigidBodyModel,
+    q: np.ndarray | str,
+    direction: str,
+    side: str,
+    joint_velocity: np.ndarray | None,
+) -> _Push:
+    q = np.asarray(posture(design, q, model) if isinstance(q, str) else q, float)
+    joints = len(joint_names(design))
+    speed = np.zeros(joints) if joint_velocity is None else np.asarray(joint_velocity, float)
+    for name, values, length in (("q", q, model.model.nq), ("joint_velocity", speed, joints)):
+        if values.shape != (length,) or not np.all(np.isfinite(values)):
+            remedy = f"expects finite numbers, shape ({length},)"
+            raise InputError("capability", name, values.shape, remedy)
+    first = model.base_dof + design.copies.index(side) * joints
+    columns = slice(first, first + joints)
     points, jacobian = contact_kinematics(model, q)
     pads = sole_pads(model.tree)
     own = np.array([pad.side == side for pad in pads], bool)
     if not np.any(own):
         raise InfeasibleError(f"{design.name}: {side or 'the robot'} has no pads to push with")
-    lowest = points[own, 2].min()
-    touching = np.flatnonzero(own & (points[:, 2] < lowest + ON_FLOOR))
-    gravity = model.inverse_dynamics(q, np.zeros(model.model.nv), np.zeros(model.model.nv))[columns]
-    matrix, envelope = joint_from_motor(design), motor_envelope(design)
-    lower, upper = torque_limits(envelope, motor_velocity(matrix, speed))
+    touching = np.flatnonzero(own & (points[:, 2] < points[own, 2].min() + ON_FLOOR))
+    still = np.zeros(model.model.nv)
+    speeds = motor_velocity(joint_from_motor(design), speed)
+    lower, upper = torque_limits(motor_envelope(design), speeds)
+    return _Push(
+        design=design,
+        direction=direction,
+        side=side,
+        model=model,
+        q=q,
+        link=pads[touching[0]].link if isinstance(design, TreeDesign) else f"{side}_foot",
+        touching=touching,
+        points=points[touching],
+        jacobian=np.swapaxes(jacobian[touching][:, :, columns].reshape(-1, joints), 0, 1),
+        gravity=model.inverse_dynamics(q, still, still)[columns],
+        lower=lower,
+        upper=upper,
+    )
 
-    force = cp.Variable((len(touching), 3))  # over weight
+
+def _extreme(push: _Push, upright: bool, vertical: float | None) -> tuple[np.ndarray, np.ndarray]:
+    """Forces on the touching pads [N], `(k, 3)`, and motor torques [Nm], `(motors,)`, of the
+    largest force; arguments as in `largest_force`.
+    """
+    import cvxpy as cp
+
+    design, weight, count = push.design, push.weight, len(push.touching)
+    matrix, peak = joint_from_motor(design), motor_envelope(design).peak_torque
+    force = cp.Variable((count, 3))  # over weight
     torque = cp.Variable(len(motor_names(design)))  # over peak
-    peak, friction = envelope.peak_torque, float(design.contact_section.friction)
-    pushed = np.swapaxes(jacobian[touching][:, :, columns].reshape(-1, joints), 0, 1) * weight
+    stacked = cp.reshape(force, (3 * count,), order="C")
     scale = np.max(np.abs(matrix) @ peak)
     constraints = [
         (matrix * peak / scale) @ torque
-        == (gravity - pushed @ cp.reshape(force, (3 * len(touching),), order="C")) / scale,
-        torque >= lower / peak,
-        torque <= upper / peak,
-        cp.SOC(friction * force[:, 2], force[:, :2].T, axis=0),
+        == (push.gravity - (push.jacobian * weight) @ stacked) / scale,
+        torque >= push.lower / peak,
+        torque <= push.upper / peak,
+        cp.SOC(push.friction * force[:, 2], force[:, :2].T, axis=0),
     ]
     if upright:
-        arms = points[touching] - model.center_of_mass(q)
-        turning = np.hstack([_cross(arm) for arm in arms])
-        constraints.append(turning @ cp.reshape(force, (3 * len(touching),), order="C") == 0)
+        arms = push.points - push.model.center_of_mass(push.q)
+        turning = np.hstack([skew(arm) for arm in arms])
+        constraints.append(turning @ stacked == 0)
     if vertical is not None:
         constraints.append(cp.sum(force[:, 2]) == vertical / weight)
-    towards = DIRECTIONS[direction]
-    total = cp.sum(force, axis=0) @ towards
+    total = cp.sum(force, axis=0) @ DIRECTIONS[push.direction]
     problem = cp.Problem(cp.Maximize(total), [*constraints, cp.sum(force[:, 2]) <= LARGEST])
     try:
         problem.solve(solver=cp.CLARABEL)
     except cp.error.SolverError:
         raise InfeasibleError(
-            f"{design.name}: the solver finds no largest {direction} force in this posture"
+            f"{design.name}: the solver finds no largest {push.direction} force in this posture"
         ) from None
     if problem.status not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
         raise InfeasibleError(
-            f"{design.name}: no contact force of the {side} foot lets its motors hold this posture "
-            f"({problem.status})"
+            f"{design.name}: no contact force of the {push.side} foot lets its motors hold this "
+            f"posture ({problem.status})"
         )
-    solution = force.value * weight
-    if solution[:, 2].sum() > 0.999 * LARGEST * weight:
+    pad_force = force.value * weight
+    if pad_force[:, 2].sum() > 0.999 * LARGEST * weight:
         raise InfeasibleError(
-            f"{design.name}: the {side} leg is straight in this posture: its bones carry any "
-            f"force; bend the knee"
+            f"{design.name}: the {push.side} leg is straight in this posture: its bones carry any "
+            "force; bend the knee"
         )
-    return _result(
-        design,
-        direction,
-        model,
-        q,
-        side,
-        touching,
-        points,
-        solution,
-        torque.value * peak,
-        lower,
-        upper,
-        weight,
-    )
+    return pad_force, torque.value * peak
 
 
-def _result(
-    design: RobotDesign,
-    direction: str,
-    model: RigidBodyModel,
-    q: np.ndarray,
-    side: str,
-    touching: np.ndarray,
-    points: np.ndarray,
-    solution: np.ndarray,
-    torque: np.ndarray,
-    lower: np.ndarray,
-    upper: np.ndarray,
-    weight: float,
-) -> ContactForce:
-    pads, envelope = sole_pads(model.tree), motor_envelope(design)
+def _contact_force(push: _Push, touching_force: np.ndarray, torque: np.ndarray) -> ContactForce:
+    design, weight = push.design, push.weight
+    pads, envelope = sole_pads(push.model.tree), motor_envelope(design)
     pad_force = np.zeros((len(pads), 3))
-    pad_force[touching] = solution
-    total = solution.sum(0)
-    link = pads[touching[0]].link if isinstance(design, TreeDesign) else f"{side}_foot"
-    ankle = model.frame_position(q, link)
-    center = (points[touching] * solution[:, 2:]).sum(0) / max(total[2], 1e-12) - ankle
-    near = np.minimum(upper - torque, torque - lower) / envelope.peak_torque
-    slack = float(design.contact_section.friction) * solution[:, 2] - np.linalg.norm(
-        solution[:, :2], axis=1
-    )
-    loaded = solution[:, 2] > 1e-3 * weight
+    pad_force[push.touching] = touching_force
+    total = touching_force.sum(0)
+    pressed = (push.points * touching_force[:, 2:]).sum(0) / max(total[2], 1e-12)
+    center = pressed - push.model.frame_position(push.q, push.link)
+    near = np.minimum(push.upper - torque, torque - push.lower) / envelope.peak_torque
+    sideways = np.linalg.norm(touching_force[:, :2], axis=1)
+    slack = push.friction * touching_force[:, 2] - sideways
+    loaded = touching_force[:, 2] > 1e-3 * weight
     return ContactForce(
         design=design.name,
         variant=design.variant,
-        direction=direction,
+        direction=push.direction,
         force=total,
         pad_force=pad_force,
         center_of_pressure=center[:2],
@@ -327,10 +355,10 @@ def _result(
         ),
         slipping=tuple(
             pads[p].name
-            for p, rest, bears in zip(touching, slack, loaded, strict=True)
+            for p, rest, bears in zip(push.touching, slack, loaded, strict=True)
             if bears and rest < BINDING * weight
         ),
-        body_weights=float(total @ DIRECTIONS[direction]) / weight,
+        body_weights=float(total @ DIRECTIONS[push.direction]) / weight,
     )
 
 
@@ -363,17 +391,8 @@ def capability_table(
                 row |= {
                     "force": float(largest.force @ DIRECTIONS[direction]),
                     "body_weights": largest.body_weights,
+                    "center_of_pressure": float(largest.center_of_pressure[0]),
+                    "binding": largest.binding,
                 }
-                rows.append(
-                    {
-                        **row,
-                        "center_of_pressure": float(largest.center_of_pressure[0]),
-                        "binding": largest.binding,
-                    }
-                )
+                rows.append(row)
     return rows
-
-
-def _cross(arm: np.ndarray) -> np.ndarray:
-    x, y, z = arm
-    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])

@@ -1,4 +1,6 @@
-"""Parts of the study's page about how motors share joints: the matrix, envelopes, and how light that makes the leg."""
+"""Parts of the study's page about how motors share joints: the matrix, envelopes, and how light that
+makes the leg.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.report.page import Section, Table
-from hyperleg_design.report.study.context import Made
-from hyperleg_design.report.style import save
+from hyperleg_design.report.study.context import Context, Made
+from hyperleg_design.report.style import later
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.names import POSTURES
 
 if TYPE_CHECKING:
-    from hyperleg_design.report.study.context import Context
+    from hyperleg_design.sizing.inertia import LegInertia
 
 
 def cooperative_actuation(context: Context) -> Made:
@@ -58,7 +60,7 @@ def cooperative_actuation(context: Context) -> Made:
         context.picture(
             "linkage",
             "Reductions over posture. Squares and dots: the printed postures.",
-            lambda p: save(linkage_figure(design), p),
+            later(linkage_figure, design),
         ),
     ]
     return Made(Section("Cooperative actuation", content))
@@ -106,7 +108,7 @@ def envelopes(context: Context) -> Made:
         context.picture(
             "envelopes",
             "Envelopes of the ankle motors, and of ankle pitch (L+R) and roll (L−R), with the operating points of a planned walk at 1.33 m/s.",
-            lambda p: save(torque_speed_figure(design, torque, velocity), p),
+            later(torque_speed_figure, design, torque, velocity),
         ),
         f"The printed maxima of the joints are one at a time. Below the hip the reachable torques are a zonotope that fills {100 * share:.1f} % of the box those maxima span. With no knee torque, ankle pitch reaches {pitch:.1f} Nm, not {high[4]:.1f}.",
         Table(
@@ -122,12 +124,12 @@ def envelopes(context: Context) -> Made:
         context.picture(
             "slices",
             "What two joints can have together, the others at zero, against the box (dashed).",
-            lambda p: save(slice_figure(design), p),
+            later(slice_figure, design),
         ),
         context.picture(
             "polyhedron",
             "Knee, ankle pitch and toe together, inside the box of their maxima.",
-            lambda p: save(polyhedron_figure(design), p),
+            later(polyhedron_figure, design),
         ),
     ]
     return Made(Section("Envelopes, and what a box hides", content))
@@ -148,30 +150,8 @@ def lightness(context: Context) -> Made:
 
     own = {name: leg_inertia(design) for name, design in context.variants.items()}
     others = compare()
-    rows: list[list[Any]] = [
-        [
-            name,
-            float(m.total_mass),
-            float(m.leg_mass),
-            float(m.distal_share),
-            float(m.inertia_over_leg),
-            float(m.inertia_over_total),
-            float(m.gyration_over_length),
-        ]
-        for name, m in own.items()
-    ]
-    rows += [
-        [
-            r.source.name,
-            float(r.leg.total_mass),
-            float(r.leg.leg_mass),
-            float(r.leg.distal_share),
-            float(r.leg.inertia_over_leg),
-            float(r.leg.inertia_over_total),
-            float(r.leg.gyration_over_length),
-        ]
-        for r in others
-    ]
+    rows = [_leg_row(name, leg) for name, leg in own.items()]
+    rows += [_leg_row(other.source.name, other.leg) for other in others]
     toe, bare = own["toe"], own["toe_removed"]
     bipeds = [r for r in others if r.source.legs == 2]
     content = [
@@ -180,7 +160,7 @@ def lightness(context: Context) -> Made:
         context.picture(
             "lightness",
             "Share of the leg's mass below the knee, and swing inertia of the straight leg about the hip.",
-            lambda p: save(leg_comparison_figure(list(context.variants.values()), others), p),
+            later(leg_comparison_figure, list(context.variants.values()), others),
         ),
         Table(
             [
@@ -201,6 +181,20 @@ def lightness(context: Context) -> Made:
     )
 
 
+def _leg_row(name: str, leg: LegInertia) -> list[Any]:
+    """Mass and inertia of a robot's leg, and what they are over its size."""
+    numbers = (
+        leg.total_mass,
+        leg.leg_mass,
+        leg.distal_share,
+        leg.inertia_over_leg,
+        leg.inertia_over_total,
+        leg.gyration_over_length,
+    )
+    return [name, *map(float, numbers)]
+
+
 def _lighter(own: Any, others: list[Any]) -> str:
+    """How many of some robots have more than this one, of those that are known."""
     known = [float(v) for v in others if v == v]
     return f"{sum(v > own for v in known)} of {len(known)}"
