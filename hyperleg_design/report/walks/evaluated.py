@@ -182,6 +182,7 @@ def evaluate_shipped(
     policies = _compared(folder)
     check_different(policy.path for policy in policies)
     protocols = {WALK: walk or load_protocol("walk"), T_TEST: t_test or load_protocol("t_test")}
+    few = protocols[WALK].changed(trials=min(BAND_TRIALS, int(protocols[WALK].trials)))
     kinds = [
         T_TEST if isinstance(protocol_for(load_policy(p.path)), TTestProtocol) else WALK
         for p in policies
@@ -196,57 +197,64 @@ def evaluate_shipped(
             progress(done, count, evaluation.policy)
 
     processes = workers or os.cpu_count() or 1
-    shown = {(p.group, p.design): i for i, p in reversed(list(enumerate(policies))) if p.late == 0}
-    by_job: dict[int, Evaluation] = {}
-    for kind, protocol in protocols.items():
-        places = [i for i, own in enumerate(kinds) if own == kind]
-        signals = [int(i in shown.values()) for i in places]
-        some = (
-            evaluate_many(
-                [policies[i].path for i in places],
-                protocol,
-                workers=processes,
-                kept=signals,
-                progress=note,
-            )
-            if places
-            else []
-        )
-        by_job |= dict(zip(places, some, strict=True))
-    jobs = [(policy, constant) for policy in banded for constant in band]
-    few = protocols[WALK].changed(trials=min(BAND_TRIALS, int(protocols[WALK].trials)))
-    changes = [{"contact.time_constant": constant} for _, constant in jobs]
-    walks = (
-        evaluate_many(
-            [p.path for p, _ in jobs],
-            few,
-            workers=processes,
-            kept=0,
-            overrides=changes,
-            progress=note,
-        )
-        if jobs
-        else []
-    )
+    evaluations = _under_own_protocols(policies, kinds, protocols, processes, note)
+    walks = _over_contacts(banded, band, few, processes, note)
     speeds = {
-        group: robustness(
-            [p.path for p in some],
-            [SPEED],
-            protocol=few,
-            workers=processes,
-        )
+        group: robustness([p.path for p in some], [SPEED], protocol=few, workers=processes)
         for group, some in _free(policies, kinds).items()
     }
-    over: dict[str, dict[float, list[Evaluation]]] = {}
-    for (policy, constant), evaluation in zip(jobs, walks, strict=True):
-        over.setdefault(policy.design, {}).setdefault(constant, []).append(evaluation)
-    return Evaluated(
-        policies,
-        [by_job[i] for i in range(len(policies))],
-        missing_trainings(policies),
-        over,
-        speeds,
+    return Evaluated(policies, evaluations, missing_trainings(policies), walks, speeds)
+
+
+def _under_own_protocols(
+    policies: Sequence[Shipped],
+    kinds: Sequence[str],
+    protocols: Mapping[str, Protocol],
+    workers: int,
+    note: Callable[[Evaluation], None],
+) -> list[Evaluation]:
+    """Evaluate each policy under the protocol of its kind; the first last policy of each group and
+    design keeps the signals of one trial.
+    """
+    shown = {(p.group, p.design): i for i, p in reversed(list(enumerate(policies))) if p.late == 0}
+    evaluations: dict[int, Evaluation] = {}
+    for kind, protocol in protocols.items():
+        places = [i for i, own in enumerate(kinds) if own == kind]
+        if places:
+            of_kind = evaluate_many(
+                [policies[i].path for i in places],
+                protocol,
+                workers=workers,
+                kept=[int(i in shown.values()) for i in places],
+                progress=note,
+            )
+            evaluations |= dict(zip(places, of_kind, strict=True))
+    return [evaluations[i] for i in range(len(policies))]
+
+
+def _over_contacts(
+    policies: Sequence[Shipped],
+    constants: Sequence[float],
+    protocol: Protocol,
+    workers: int,
+    note: Callable[[Evaluation], None],
+) -> dict[str, dict[float, list[Evaluation]]]:
+    """Evaluate policies on contacts of several time constants [s], by design and constant."""
+    jobs = [(policy, constant) for policy in policies for constant in constants]
+    if not jobs:
+        return {}
+    walks = evaluate_many(
+        [policy.path for policy, _ in jobs],
+        protocol,
+        workers=workers,
+        kept=0,
+        overrides=[{"contact.time_constant": constant} for _, constant in jobs],
+        progress=note,
     )
+    by_design: dict[str, dict[float, list[Evaluation]]] = {}
+    for (policy, constant), evaluation in zip(jobs, walks, strict=True):
+        by_design.setdefault(policy.design, {}).setdefault(constant, []).append(evaluation)
+    return by_design
 
 
 def missing_trainings(policies: Sequence[Shipped]) -> list[str]:

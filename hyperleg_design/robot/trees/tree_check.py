@@ -4,7 +4,6 @@ that can be.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -12,6 +11,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import motors
+from hyperleg_design.robot.checks.refusal import check_batch, check_name, refuse
 from hyperleg_design.robot.laws.friction import joint_friction
 from hyperleg_design.robot.laws.gear import rotor_inertia
 from hyperleg_design.robot.parameters import values as parameters
@@ -109,8 +109,9 @@ def check_tree_design(design: TreeDesign) -> None:
         InputError: names the field, its value and what would be right.
     """
     where = str(design.source or design.name)
-    _check_name(design, where)
-    _check_batch(design, where)
+    check_name(design, where)
+    _check_limb_names(design, where)
+    check_batch(design, where)
     links = design.link_sections
     ordered(
         {name: (str(j.parent), str(j.child)) for name, j in design.all_joints.items()},
@@ -138,32 +139,12 @@ def check_tree_design(design: TreeDesign) -> None:
     rotor_inertia(design)
 
 
-def _refuse(where: str, field: str, good: Any, value: Any, remedy: str) -> None:
-    """Raise where something is not good, in any robot of a batch."""
-    good, value = np.asarray(good), np.asarray(value)
-    if np.all(good):
-        return
-    shown = value if good.ndim == 0 or value.shape[:1] != good.shape else value[np.argmin(good)]
-    raise InputError(where, field, shown.tolist(), remedy, bad=~good)
-
-
-def _check_name(design: TreeDesign, where: str) -> None:
-    if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,99}", str(design.name)):
-        remedy = "expects a letter or digit, then letters, digits, dots, dashes or underscores"
-        raise InputError(where, "name", design.name, remedy)
-    names = [tree_copy for tree_copy in design.copies if tree_copy]
+def _check_limb_names(design: TreeDesign, where: str) -> None:
+    names = [copy for copy in design.copies if copy]
     for copy in names:
         if any(other != copy and other.startswith(f"{copy}_") for other in names):
             remedy = "is the start of another limb's name; choose names that differ"
             raise InputError(where, f"limbs.{copy}", None, remedy)
-
-
-def _check_batch(design: TreeDesign, where: str) -> None:
-    sizes = {path: size for path, size in design.batch_sizes().items() if size > 1}
-    if len(set(sizes.values())) > 1:
-        first, last = min(sizes, key=lambda p: sizes[p]), max(sizes, key=lambda p: sizes[p])
-        remedy = f"is the length of its batch, but that of {first} is {sizes[first]}"
-        raise InputError(where, last, sizes[last], f"{remedy}; make them equal")
 
 
 def _check_joints(design: TreeDesign, where: str) -> None:
@@ -178,10 +159,10 @@ def _check_joints(design: TreeDesign, where: str) -> None:
         if joint.type == "fixed":
             continue
         remedy = "must lie below upper_deg; the range is reversed or empty"
-        _refuse(where, f"{place}.lower_deg", lower < upper, lower, remedy)
+        refuse(where, f"{place}.lower_deg", lower < upper, lower, remedy)
         remedy = "must lie within lower_deg .. upper_deg"
         inside = (lower <= default) & (default <= upper)
-        _refuse(where, f"{place}.default_deg", inside, default, remedy)
+        refuse(where, f"{place}.default_deg", inside, default, remedy)
     for name, rod in design.rod_sections.items():
         _unit(where, f"rods.{name}.axis", rod.axis)
 
@@ -189,7 +170,7 @@ def _check_joints(design: TreeDesign, where: str) -> None:
 def _unit(where: str, field: str, axis: Any) -> None:
     length = np.linalg.norm(np.asarray(axis, float), axis=-1)
     remedy = "expects a vector of length 1"
-    _refuse(where, field, np.abs(length - 1) < 1e-4, axis, remedy)
+    refuse(where, field, np.abs(length - 1) < 1e-4, axis, remedy)
 
 
 def _check_motors(design: TreeDesign, where: str) -> None:
@@ -212,7 +193,7 @@ def _check_bodies(design: TreeDesign, where: str) -> None:
             "are principal moments of inertia that no body has: none is negative, and the largest "
             "is at most the sum of the other two; check gyration, inertia and the units"
         )
-        _refuse(where, f"links.{name}", real, principal.round(9), remedy)
+        refuse(where, f"links.{name}", real, principal.round(9), remedy)
     fixed = {j.child for j in design.all_joints.values() if j.type == "fixed"}
     for name, joint in design.joint_sections.items():
         own = [joint.child]
@@ -222,13 +203,13 @@ def _check_bodies(design: TreeDesign, where: str) -> None:
             ]
         mass = sum((np.asarray(masses[link].mass) for link in own), start=np.zeros(()))
         remedy = f"moves with the joint {name} and has no mass; give it some, or fix the joint"
-        _refuse(where, f"links.{joint.child}.mass", mass > 0, mass, remedy)
+        refuse(where, f"links.{joint.child}.mass", mass > 0, mass, remedy)
         if len(own) == 1:  # a fixed child beside it is at another place
             inertia = masses[joint.child].inertia
             remedy = "expects the radii of gyration of a link that moves, unless inertia is given"
             gyration = design.link_sections[joint.child].gyration
             extended = np.any(inertia > 0, axis=(-2, -1))
-            _refuse(where, f"links.{joint.child}.gyration", extended, gyration, remedy)
+            refuse(where, f"links.{joint.child}.gyration", extended, gyration, remedy)
 
 
 def _check_actuation(design: TreeDesign, where: str) -> None:
@@ -280,4 +261,4 @@ def _check_printed(design: TreeDesign, where: str) -> None:
     )
     remedy = f"the links add up to {float(np.max(total)):.6g} kg; correct one or the other"
     good = (printed == 0) | (np.abs(total - printed) < 1e-6)
-    _refuse(where, "masses.expected_total", good, printed, remedy)
+    refuse(where, "masses.expected_total", good, printed, remedy)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.sizing.motions.balance import Series, balanced_states, lifted
-from hyperleg_design.sizing.motions.foot_path import Step, foot_path, quintic
+from hyperleg_design.sizing.motions.foot_path import FootPath, Step, foot_path, quintic
 from hyperleg_design.sizing.motions.motion import Motion, check_positive, contact_mask
 from hyperleg_design.sizing.motions.squat import sole_middle
 
@@ -84,79 +84,28 @@ def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> 
     if samples < 40:
         raise InputError("stair", "samples", samples, "expects at least 40")
     model = rigid_body_model(design)
-    marks = np.cumsum(
-        [
-            0.0,
-            plan.shift / 2,
-            plan.shift,
-            plan.swing,
-            plan.rise,
-            plan.swing,
-            plan.shift,
-            plan.shift / 2,
-        ]
-    )
-    _, leave, up, landed, over, beside, centred, end = marks
-    time = np.linspace(0.0, end, samples)
-    y, ahead, high = plan.width * design.hip.spacing / 2, plan.step_depth, plan.step_height
-    left = Step(up, up, landed, landed, (0.0, y, 0.0), (ahead, y, high), 0.0, 0.0, plan.clearance)
-    heel_up = landed + plan.heel_rise * plan.rise
-    right = Step(
-        heel_up,
-        over,
-        beside,
-        beside,
-        (0.0, -y, 0.0),
-        (ahead, -y, high),
-        plan.pitch_off,
-        0.0,
-        plan.clearance,
-    )
-    feet = (foot_path(design, time, [left]), foot_path(design, time, [right]))
-
-    middle, tip = (
-        sole_middle(design),
-        design.foot.ball_length + design.toe.length - design.contact.pad_radius,
-    )
-    inner = y - plan.inward * max(design.foot.width / 2 - design.contact.pad_radius, 0.0)
-    lower, upper = (
-        np.array([middle, -inner, 0.0]),
-        np.array([ahead + plan.upper_pressure * middle, inner, high]),
-    )
-    ready = np.array([middle + 0.85 * (tip - middle), -inner, 0.0])
-    stops = [
-        (0.0, np.array([middle, 0.0, 0.0])),
-        (leave, np.array([middle, 0.0, 0.0])),
-        (up, lower),
-        (landed, ready),
-        (over, upper),
-        (beside, upper),
-        (centred, np.array([ahead + middle, 0.0, high])),
-        (end, np.array([ahead + middle, 0.0, high])),
-    ]
-    path = np.zeros((3, samples, 3))
-    for (t0, p0), (t1, p1) in itertools.pairwise(stops):
-        inside = (time >= t0) & (time <= t1)
-        for axis in range(3):
-            path[:, inside, axis] = quintic(
-                time[inside], t0, t1, (p0[axis], 0, 0), (p1[axis], 0, 0)
-            )
+    times = _times(plan)
+    time = np.linspace(0.0, times.end, samples)
+    half, ahead, high = plan.width * design.hip.spacing / 2, plan.step_depth, plan.step_height
+    inner = half - plan.inward * max(design.foot.width / 2 - design.contact.pad_radius, 0.0)
+    feet = _feet(design, plan, times, time, half)
+    path = _pressure(design, plan, times, time, inner)
     pressure, lean = path[0], -plan.lean / inner * path[..., 1]
 
     climb = np.zeros((3, samples))
-    climb[0, time >= over] = high
-    rising = (time >= landed) & (time < over)
-    climb[:, rising] = quintic(time[rising], landed, over, (0, 0, 0), (high, 0, 0))
+    climb[0, time >= times.over] = high
+    rising = (time >= times.landed) & (time < times.over)
+    climb[:, rising] = quintic(time[rising], times.landed, times.over, (0, 0, 0), (high, 0, 0))
 
     def height(place: np.ndarray, _rise: np.ndarray) -> np.ndarray:
         return lifted(design, place, feet, climb, plan.min_knee, lean[0])
 
     states = balanced_states(
-        model, feet, pressure, height, Series(end / (samples - 1), mirrored=True), roll=lean
+        model, feet, pressure, height, Series(times.end / (samples - 1), mirrored=True), roll=lean
     )
     assumed = {
-        "step": f"{high:g} m high, {ahead:g} m ahead, {SIDES[0]} foot first, {end:.2f} s from rest "
-        f"to rest (assumed)",
+        "step": f"{high:g} m high, {ahead:g} m ahead, {SIDES[0]} foot first, {times.end:.2f} s "
+        "from rest to rest (assumed)",
         "pelvis": f"leans by {np.rad2deg(plan.lean):.0f} deg over the standing foot and rises as "
         f"the weight passes (assumed)",
         "knee": f"never straighter than {np.rad2deg(plan.min_knee):.0f} deg (assumed)",
@@ -176,3 +125,88 @@ def stair(design: Design, plan: StairPlan | None = None, samples: int = 151) -> 
         ahead,
         assumed,
     )
+
+
+class _Times(NamedTuple):
+    """When the parts of a step end [s]."""
+
+    start: float
+    leave: float
+    """The weight begins to go to the right foot."""
+    up: float
+    """The left foot leaves the floor."""
+    landed: float
+    """The left foot stands on the step."""
+    over: float
+    """The weight is on the left foot, and the right one leaves the floor."""
+    beside: float
+    """The right foot stands on the step, too."""
+    centred: float
+    """The weight is on both feet."""
+    end: float
+
+
+def _times(plan: StairPlan) -> _Times:
+    half = plan.shift / 2
+    parts = (0.0, half, plan.shift, plan.swing, plan.rise, plan.swing, plan.shift, half)
+    return _Times(*np.cumsum(parts))
+
+
+def _feet(
+    design: Design, plan: StairPlan, times: _Times, time: np.ndarray, half: float
+) -> tuple[FootPath, FootPath]:
+    """Paths of the left and the right foot, which stand `half` [m] beside the middle."""
+    ahead, high = plan.step_depth, plan.step_height
+    heel_up = times.landed + plan.heel_rise * plan.rise
+    left = Step(
+        times.up,
+        times.up,
+        times.landed,
+        times.landed,
+        (0.0, half, 0.0),
+        (ahead, half, high),
+        0.0,
+        0.0,
+        plan.clearance,
+    )
+    right = Step(
+        heel_up,
+        times.over,
+        times.beside,
+        times.beside,
+        (0.0, -half, 0.0),
+        (ahead, -half, high),
+        plan.pitch_off,
+        0.0,
+        plan.clearance,
+    )
+    return foot_path(design, time, [left]), foot_path(design, time, [right])
+
+
+def _pressure(
+    design: Design, plan: StairPlan, times: _Times, time: np.ndarray, inner: float
+) -> np.ndarray:
+    """Centre of pressure with rate and acceleration, `(3, samples, 3)`; it is `inner` [m] beside
+    the middle while one foot bears all.
+    """
+    ahead, high = plan.step_depth, plan.step_height
+    middle = sole_middle(design)
+    tip = design.foot.ball_length + design.toe.length - design.contact.pad_radius
+    upper = np.array([ahead + plan.upper_pressure * middle, inner, high])
+    stops = (
+        (times.start, np.array([middle, 0.0, 0.0])),
+        (times.leave, np.array([middle, 0.0, 0.0])),
+        (times.up, np.array([middle, -inner, 0.0])),
+        (times.landed, np.array([middle + 0.85 * (tip - middle), -inner, 0.0])),
+        (times.over, upper),
+        (times.beside, upper),
+        (times.centred, np.array([ahead + middle, 0.0, high])),
+        (times.end, np.array([ahead + middle, 0.0, high])),
+    )
+    path = np.zeros((3, len(time), 3))
+    for (t0, p0), (t1, p1) in itertools.pairwise(stops):
+        inside = (time >= t0) & (time <= t1)
+        for axis in range(3):
+            begin, end = (p0[axis], 0, 0), (p1[axis], 0, 0)
+            path[:, inside, axis] = quintic(time[inside], t0, t1, begin, end)
+    return path
