@@ -66,6 +66,7 @@ FILES: dict[str, str | bytes] = {
     "text.csv": "time,position/knee\n" + "".join(f"{i / 100},x\n" for i in range(50)),
     "no_time.csv": "position/knee\n" + "1.0\n" * 50,
     "back.csv": "time,position/knee\n" + "".join(f"{-i / 100},0\n" for i in range(50)),
+    "misspelt.csv": "time,positon/knee\n" + "".join(f"{i / 100},0\n" for i in range(50)),
     "still_clock.csv": "time,position/knee\n" + "0.0,0.0\n" * 50,
     "garbage.parquet": b"PAR1 garbage PAR1",
     "garbage.mcap": b"\x89MCAP0\r\n garbage",
@@ -150,6 +151,8 @@ CASES: list[tuple[tuple[str, ...], tuple[str, ...]]] = [
     (("analyze", "--set", "toe.mass="), ("toe.mass",)),
     (("analyze", "--set", "=0.3"), ("0.3",)),
     (("analyze", "--set", "toe=0.3"), ("toe",)),
+    (("analyze", "--set", "actuators.*.gears=7"), ("actuators.*.gears", "7")),
+    (("build", "--set", "*.mass=-1", *OUT), ("pelvis.mass", "-1", "kg")),
     (("analyze", "--set", "toe.mass=300"), ("toe.mass", "300", "kg")),
     (("analyze", "--set", "toe.mass=-0.1"), ("toe.mass", "-0.1", "kg")),
     (("analyze", "--set", "toe.mass=nan"), ("toe.mass", "nan")),
@@ -243,6 +246,7 @@ CASES: list[tuple[tuple[str, ...], tuple[str, ...]]] = [
         for name in ROBOT_FILES
         if name not in ("mesh.urdf", "massless.xml")
     ],
+    (("gap", "check", "misspelt.csv"), ("positon/knee", "did you mean position/knee?")),
     *[(("gap", "check", name), (name,)) for name in LOG_FILES],
     *[(("gap", "diagnose", "--robot", "toe", "--logs", name, *OUT), (name,)) for name in LOG_FILES],
 ]

@@ -97,11 +97,10 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
     """
     check_keys(data, where, "", (), tuple(KEYS))
     moving = [n for n, j in robot.joints.items() if j.kind != "fixed"]
-    locked = {
-        name
-        for pattern in data.get("lock") or []
-        for name in _matching(str(pattern), moving, where, "lock")
-    }
+    lock = data.get("lock") or []
+    if not isinstance(lock, list):
+        raise InputError(where, "lock", lock, "expects a list of joints or patterns")
+    locked = {name for pattern in lock for name in _matching(str(pattern), moving, where, "lock")}
     for name in moving:
         kind = robot.joints[name].kind
         if kind != "revolute" and name not in locked:
@@ -113,6 +112,7 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
         own = pattern in _section(data, "transmission", where)
         own = own or pattern in _section(data, "rods", where)
         names = [pattern] if own else _matching(pattern, free, where, "actuators")
+        _fields(held, where, f"actuators.{pattern}", "motor: RI70, gear: 9")
         for name in names:
             parent = robot.joints[name].parent if name in robot.joints else robot.root
             actuators[name] = {"housed_in": parent} | dict(held)
@@ -121,7 +121,7 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
     }
     for pattern, held in _section(data, "joints", where).items():
         for name in _matching(pattern, list(robot.joints), where, "joints"):
-            joints[name] |= held
+            joints[name] |= _fields(held, where, f"joints.{pattern}", "stiffness: 50")
     trunk = {"link": robot.root, "motion": "floating" if robot.floating else "fixed"}
     rest = {k: data[k] for k in KEYS[5:] if k in data}
     if "pads" in data:
@@ -159,7 +159,7 @@ def _pads(robot: FileRobot, given: Mapping[str, Any], where: str) -> dict[str, A
     """
     mapping: dict[str, Any] = {}
     for name, held in given.items():
-        if isinstance(held, Mapping) and "position" in held:
+        if "position" in _fields(held or {}, where, f"pads.{name}", "radius: 0.01"):
             mapping[name] = held
             continue
         links = [link for link in robot.links if fnmatchcase(link, name)]
@@ -191,6 +191,13 @@ def _section(data: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]
     held = data.get(key) or {}
     if not isinstance(held, Mapping):
         raise InputError(where, key, held, "expects a mapping of names to values")
+    return held
+
+
+def _fields(held: Any, where: str, place: str, example: str) -> Mapping[str, Any]:
+    """What an entry holds, which must be fields by name."""
+    if not isinstance(held, Mapping):
+        raise InputError(where, place, held, f"expects fields by name, such as {{{example}}}")
     return held
 
 

@@ -275,6 +275,10 @@ def load_motor(path: Path) -> Motor:
         current_convention=convention["current"],
         presets=presets,
     )
+    if motor._value("pole_pairs") % 1:
+        raise InputError(
+            where, "constants.pole_pairs", motor._value("pole_pairs"), "expects a whole number"
+        )
     if motor.rated_torque > motor._value("peak_torque"):
         raise InputError(
             where, "constants.rated_torque", motor.rated_torque, "must not exceed peak_torque"

@@ -159,6 +159,14 @@ def test_broken_files_are_one_clear_error_and_nothing_is_written(case, tmp_path,
     [
         ({"actuators": {"hip": LEG["hip"]}}, ["joints.knee", "no motor"]),
         ({"actuators": LEG, "lock": ["elbow"]}, ["lock.elbow", "no such moving joint"]),
+        ({"actuators": LEG, "lock": "hip"}, ["lock = 'hip'", "expects a list"]),
+        ({"actuators": {"*": "RI70"}}, ["actuators.* = 'RI70'", "{motor: RI70, gear: 9}"]),
+        ({"actuators": LEG, "joints": {"hip": 50}}, ["joints.hip = 50", "{stiffness: 50}"]),
+        ({"actuators": LEG, "pads": {"shank": 0.01}}, ["pads.shank = 0.01", "{radius: 0.01}"]),
+        (
+            {"actuators": LEG, "transmission": {"joint_from_motor": [["x", 0], [0, 9]]}},
+            ["joint_from_motor = [['x', 0], [0, 9]]", "2 rows of 2"],
+        ),
         ({"actuators": LEG, "motors": {}}, ["motors", "no such field"]),
         (
             {"actuators": LEG, "transmission": {"joint_from_motor": [[7.0]]}},

@@ -74,6 +74,10 @@ def test_a_motor_without_a_name_bears_its_files(write):
 
 
 CHANGES = {
+    "half a pole": (
+        lambda d: d["constants"]["pole_pairs"].update(value=10.5),
+        ["constants.pole_pairs", "10.5", "whole number"],
+    ),
     "convention missing": (lambda d: d.pop("convention"), ["convention", "missing"]),
     "kind": (lambda d: d.update(kind="stepper"), ["kind", "stepper", "inrunner"]),
     "name": (lambda d: d.update(name="RI71"), ["name", "RI71", "RI70"]),

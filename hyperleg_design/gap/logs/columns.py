@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Iterable
+
 JOINT_SIGNALS = ("position_target", "position", "velocity", "joint_torque")
 MOTOR_SIGNALS = (
     "motor_torque_command",
@@ -39,6 +42,8 @@ UNITS = {
     CONTACT: "N",
 }
 """By signal."""
+NEARLY = 0.85
+"""Similarity from which a name is taken for a misspelt signal [-] (difflib's ratio)."""
 
 
 def known_column(column: str) -> bool:
@@ -58,6 +63,27 @@ def known_column(column: str) -> bool:
     return (kind == CONTACT and len(name) > 2 and name[-2:] in ("_x", "_y", "_z")) or (
         kind == BATTERY and not slash
     )
+
+
+def misspelt(columns: Iterable[str]) -> tuple[str, str] | None:
+    """Find a column whose signal is nearly one of the format that the log lacks.
+
+    Args:
+        columns: of a log.
+
+    Returns:
+        The column and the one that is meant; None where there is none.
+    """
+    columns = list(columns)
+    for column in columns:
+        kind, _, name = column.partition("/")
+        if known_column(column) or kind in UNITS:
+            continue
+        for near in difflib.get_close_matches(kind, UNITS, n=1, cutoff=NEARLY):
+            wanted = f"{near}/{name}" if name else near
+            if known_column(wanted) and wanted not in columns:
+                return column, wanted
+    return None
 
 
 def unit(column: str) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs import blocks
 from hyperleg_design.gap.logs.blocks import chosen_blocks, shortened
-from hyperleg_design.gap.logs.columns import known_column
+from hyperleg_design.gap.logs.columns import known_column, misspelt
 
 if TYPE_CHECKING:
     import pyarrow.parquet
@@ -29,7 +29,8 @@ def parquet_columns(
         Times `(t,)` [s], values by column `(t,)` each, and remarks on what was left out.
 
     Raises:
-        InputError: no column of times, no rows, a column that stands twice or holds no numbers.
+        InputError: no column of times, no rows, a column that stands twice, is misspelt or holds
+            no numbers.
     """
     import pyarrow
 
@@ -40,6 +41,10 @@ def parquet_columns(
             "t",
             list(schema.names)[:6],
             "is missing: expects the time in seconds in a column t",
+        )
+    if wrong := misspelt(schema.names):
+        raise InputError(
+            path.name, wrong[0], None, f"is no column of the log format; did you mean {wrong[1]}?"
         )
     wanted = ["t", *(c for c in schema.names if known_column(c))]
     if len(set(wanted)) != len(wanted):

@@ -119,6 +119,16 @@ def _check_names(log: Log, subject: Subject) -> None:
     for joint in log.names("position", "position_target", "velocity", "joint_torque"):
         if joint not in subject.unlogged:
             index_of(joint, subject.joints, f"{log.name}: position", "joint")
+    for joint in log.metadata.gains:
+        if joint not in subject.unlogged:
+            index_of(joint, subject.joints, f"{log.name}: gains", "joint")
+    motors = {*subject.motors, *subject.motor_aliases, *subject.unlogged}
     for motor in log.motors:
+        if motor not in motors and subject.unlogged:
+            remedy = (
+                f"drives nothing that is logged; without positions, these joints are held still: "
+                f"{', '.join(subject.unlogged)}"
+            )
+            raise InputError(log.name, "motor", motor, remedy)
         if motor not in subject.unlogged:
             motor_index(subject, motor, f"{log.name}: motor")

@@ -285,7 +285,7 @@ def _from_matrix(
             f"{held}expects {len(rows)} rows of {len(columns)} finite numbers: a row for each of "
             f"{', '.join(rows)}, a column for each of {', '.join(columns)}"
         )
-        raise InputError(where, place, None, remedy)
+        raise InputError(where, place, None if held else value, remedy)
     entries: dict[str, dict[str, Any]] = {}
     for column, motor in enumerate(columns):
         gear = float(_plain(sections["actuators"][motor].get("gear", 1.0)))

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.logs.columns import known_column
+from hyperleg_design.gap.logs.columns import known_column, misspelt
 from hyperleg_design.gap.logs.log import Log
 
 
@@ -29,3 +29,9 @@ def test_unknown_columns(column):
     assert not known_column(column)
     with pytest.raises(InputError, match="no column of the log format"):
         example(**{column: np.ones(50)})
+
+
+def test_a_nearly_right_signal_is_misspelt_unless_the_right_one_is_there():
+    assert misspelt(["t", "motor_torqe/a", "gyro/x"]) == ("motor_torqe/a", "motor_torque/a")
+    assert misspelt(["batery_voltage"]) == ("batery_voltage", "battery_voltage")
+    assert misspelt(["positions/knee", "position/knee", "temperature/knee", "mood", "t"]) is None

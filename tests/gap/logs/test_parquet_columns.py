@@ -50,6 +50,7 @@ def test_columns_that_nobody_knows_are_left_out_and_named(tmp_path):
         (pa.table({"t": ["0", "1"]}), "is no column of numbers"),
         (columns(**{"position/knee": ["a"] * 5}), "position/knee.*is no column of numbers"),
         (columns().slice(0, 0), "no rows"),
+        (columns(**{"positon/knee": [0.0] * 5}), "positon/knee.*did you mean position/knee"),
         (
             pa.Table.from_arrays(
                 [pa.array([0.0]), pa.array([1.0]), pa.array([2.0])],

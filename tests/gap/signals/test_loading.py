@@ -71,3 +71,16 @@ def test_named_in_the_metadata_only(robot_files):
 def test_errors_name_what_is_wrong(robot, logs, said):
     with pytest.raises(InputError, match=said):
         load_subject(robot, logs)
+
+
+def test_a_motor_whose_joint_is_not_logged_is_told_with_the_joint(tmp_path):
+    path = tmp_path / "arm.xml"
+    path.write_text(
+        """<mujoco><worldbody><body><joint name="a"/><geom size="0.1"/><body><joint name="b"/>
+        <geom size="0.1"/></body></body></worldbody><actuator><motor name="m_a" joint="a"/>
+        <motor name="m_b" joint="b"/></actuator></mujoco>"""
+    )
+    log = log_of(["a"])
+    torque = Log(log.name, log.time, log.signals | {"motor_torque/m_b": log.time}, log.metadata)
+    with pytest.raises(InputError, match=r"some: motor = 'm_b': drives nothing.*held still: b"):
+        load_subject(str(path), [torque])

@@ -204,6 +204,8 @@ def _lines(signals: Signals) -> list[list[float]]:
         if not is_commanded(signals, motor) or signals.measured is None:
             continue
         torque = signals.measured[:, motor]
+        if not np.isfinite(torque).any():
+            continue
         way = np.sign(torque)
         short = (limited(signals, motor, commanded(signals, motor)) - torque) * way
         far = np.flatnonzero(

@@ -17,7 +17,7 @@ import numpy as np
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.gap.logs import blocks as row_blocks
 from hyperleg_design.gap.logs.blocks import chosen_blocks, shortened
-from hyperleg_design.gap.logs.columns import known_column
+from hyperleg_design.gap.logs.columns import known_column, misspelt
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers.source import beside, made_log
 from hyperleg_design.gap.logs.readers.units import factor, split_header
@@ -92,6 +92,10 @@ def _chosen(
     missing = [name for name in mapping if name not in header and name not in [n for n, _ in names]]
     if missing:
         raise InputError(where, missing[0], header[:8], "is mapped but no column of the file")
+    if wrong := misspelt(mapping.get(name, name) for name, _ in names):
+        raise InputError(
+            where, wrong[0], None, f"is no column of the log format; did you mean {wrong[1]}?"
+        )
     for place, (name, unit) in enumerate(names):
         column = mapping.get(header[place], mapping.get(name, name))
         column, said = split_header(column)
