@@ -201,7 +201,8 @@ def change_text(one: Mapping[str, Any]) -> str:
 
 
 def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
-    """Write verdict, gap, causes, rivals and what to do next.
+    """Write verdict, gap, causes, rivals, what the model lacked in the references already, and what
+    to do next.
 
     Args:
         diagnosis: as `diagnosis.json` holds it.
@@ -222,7 +223,9 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
             f"closed on held-out data: {100 * gap['closed']:.0f} % ({low:.0f} .. {high:.0f})"
         )
     rivals = [r for r in diagnosis["rivals"] if r["probability"] >= LEAST_PROBABILITY]
-    for title, rows in (("cause", diagnosis["causes"]), ("rival", rivals[:4])):
+    lacks = (diagnosis.get("lacks") or {}).get("causes", [])
+    groups = ("cause", diagnosis["causes"]), ("rival", rivals[:4]), ("model lacks", lacks)
+    for title, rows in groups:
         for row in rows:
             words = ", ".join(
                 choice
@@ -236,6 +239,8 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
                 f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}"
                 f"{closes}; {words}"
             )
+    if remainder := diagnosis.get("remainder"):
+        lines.append(f"  remainder: {100 * remainder:.0f} % of the gap, which no effect explains")
     lines += [
         f"  at rest, which is in no residual: {one['says']}" for one in diagnosis.get("at_rest", ())
     ]

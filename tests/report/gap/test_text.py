@@ -94,6 +94,14 @@ def test_an_answer_states_units_likely_rivals_and_the_experiment_as_a_sentence()
     )
 
 
+def test_what_references_lack_and_what_remains_is_told():
+    lacking = {"verdict": "explained", "causes": [{**diagnosis()["causes"][0], "location": "hip"}]}
+    lines = diagnosis_text(diagnosis(lacks=lacking, remainder=0.25)).splitlines()
+    assert "  model lacks torque_constant at hip: p 0.90; scale 0.85 (0.84 .. 0.86)" in lines
+    assert "  remainder: 25 % of the gap, which no effect explains" in lines
+    assert "lack" not in diagnosis_text(diagnosis(lacks=None))
+
+
 def test_without_a_cause_only_the_noise_is_told():
     found = diagnosis(verdict="none", causes=[], rivals=[], separating_experiment=None)
     assert diagnosis_text(found).splitlines()[1] == "residuals [Nm]: 0.5, of which noise 0.1"
