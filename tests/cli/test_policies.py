@@ -128,3 +128,13 @@ def test_a_robot_that_does_not_fit_the_task_is_told_before_the_process_is_replac
         assert code == 2
         assert words in error
         assert not (tmp_path / "new").exists()
+
+
+def test_a_robot_that_cannot_stand_is_refused_before_anything_is_written(capsys, tmp_path: Path):
+    pytest.importorskip("rsl_rl")
+    robot = ("--design", "mini_cheetah", "--set", "links.trunk.com=[0.6, 0, 0]")
+    task = ("--task", "walk_any", "--preset", "walker", "--out", str(tmp_path / "new"))
+    code, out, error = run(capsys, "train", *robot, *task)
+    assert (code, out) == (2, "")
+    assert "mini_cheetah: default posture = [0.244, 0.0]" in error
+    assert not list(tmp_path.iterdir())
