@@ -5,12 +5,28 @@ step.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Self
 
 import numpy as np
 
 
 @dataclass(slots=True, eq=False)
-class Motion:
+class Rows:
+    """Arrays with a row a simulation."""
+
+    def put(self, ids: np.ndarray, other: Self) -> None:
+        """Overwrite the rows of some simulations with rows of another state.
+
+        Args:
+            ids: indices of the simulations to overwrite, `(k,)`.
+            other: the new rows, `(k, ...)` each.
+        """
+        for field in fields(self):
+            getattr(self, field.name)[ids] = getattr(other, field.name)
+
+
+@dataclass(slots=True, eq=False)
+class Motion(Rows):
     """Where the robots are and how they move; `(n, ...)`. Yaw frame: the pelvis's, turned
     upright.
     """
@@ -50,19 +66,9 @@ class Motion:
         """Angular velocity about the vertical [rad/s], `(n,)`."""
         return np.einsum("ni,ni->n", self.rotation[:, 2], self.angular_velocity)
 
-    def put(self, ids: np.ndarray, other: Motion) -> None:
-        """Overwrite the rows of some simulations with rows of another state.
-
-        Args:
-            ids: indices of the simulations to overwrite, `(k,)`.
-            other: the new rows, `(k, ...)` each.
-        """
-        for field in fields(self):
-            getattr(self, field.name)[ids] = getattr(other, field.name)
-
 
 @dataclass(slots=True, eq=False)
-class Goal:
+class Goal(Rows):
     """The waypoint of each simulation, as the step found it."""
 
     offset: np.ndarray
@@ -86,16 +92,6 @@ class Goal:
     """Length of that vector [m], `(n,)`."""
     finished: np.ndarray
     """Whether this step reached the last waypoint of a course, `(n,)`."""
-
-    def put(self, ids: np.ndarray, other: Goal) -> None:
-        """Overwrite the rows of some simulations with rows of other goals.
-
-        Args:
-            ids: indices of the simulations to overwrite, `(k,)`.
-            other: the new rows, `(k, ...)` each.
-        """
-        for field in fields(self):
-            getattr(self, field.name)[ids] = getattr(other, field.name)
 
 
 @dataclass(slots=True, eq=False)

@@ -173,21 +173,7 @@ def about_x(angle: np.ndarray) -> np.ndarray:
     Returns:
         Rotation matrices, `(..., 3, 3)`.
     """
-    angle = np.asarray(angle, float)
-    cosine, sine, zero, unity = (
-        np.cos(angle),
-        np.sin(angle),
-        np.zeros_like(angle),
-        np.ones_like(angle),
-    )
-    return np.stack(
-        [
-            np.stack([unity, zero, zero], -1),
-            np.stack([zero, cosine, -sine], -1),
-            np.stack([zero, sine, cosine], -1),
-        ],
-        -2,
-    )
+    return _turned(angle, 1, 2)
 
 
 def about_y(angle: np.ndarray) -> np.ndarray:
@@ -199,21 +185,18 @@ def about_y(angle: np.ndarray) -> np.ndarray:
     Returns:
         Rotation matrices, `(..., 3, 3)`.
     """
+    return _turned(angle, 2, 0)
+
+
+def _turned(angle: np.ndarray, first: int, second: int) -> np.ndarray:
+    """Rotations that turn the axis `first` towards the axis `second`, by number."""
     angle = np.asarray(angle, float)
-    cosine, sine, zero, unity = (
-        np.cos(angle),
-        np.sin(angle),
-        np.zeros_like(angle),
-        np.ones_like(angle),
-    )
-    return np.stack(
-        [
-            np.stack([cosine, zero, sine], -1),
-            np.stack([zero, unity, zero], -1),
-            np.stack([-sine, zero, cosine], -1),
-        ],
-        -2,
-    )
+    rotation = np.zeros((*angle.shape, 3, 3))
+    rotation[..., range(3), range(3)] = 1.0
+    rotation[..., first, first] = rotation[..., second, second] = np.cos(angle)
+    rotation[..., second, first] = np.sin(angle)
+    rotation[..., first, second] = -rotation[..., second, first]
+    return rotation
 
 
 def _wrapped(angle: np.ndarray) -> np.ndarray:

@@ -38,7 +38,7 @@ def check_design(design: HyperLeg) -> None:
 
 
 def _requirements(design: HyperLeg) -> Iterator[tuple[str, Any, str]]:
-    """Fields in the order of the checks, whether their numbers are good, and what would be right."""
+    """Fields in the order of the checks, whether each is good, and what would be right."""
     for name in JOINTS:
         joint = getattr(design.joints, name)
         yield (
