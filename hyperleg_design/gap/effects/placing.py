@@ -262,7 +262,7 @@ def limited(
     peak = np.minimum(subject.torque_limit[motor], peak)
     stall, free = float(subject.stall_torque[motor]), float(subject.no_load_speed[motor])
     line = np.isfinite(stall) and np.isfinite(free)
-    droop = stall / free * motor_velocity(signals, motor) if line else np.zeros(1)
+    droop = stall / free * signals.motor_speed[:, motor] if line else np.zeros(1)
     available = stall * np.maximum(voltage, 0.0) * signals.supplied[:, motor]
     largest = max(float(np.nanmax(torque, initial=0.0)), -float(np.nanmin(torque, initial=0.0)))
     if largest <= min(

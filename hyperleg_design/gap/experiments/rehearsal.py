@@ -158,5 +158,7 @@ def closed_loop(
         0.0,
         stiffness * (np.nan_to_num(target) - position) - damping * velocity,
     )
-    torque = limited_torque(subject, asked @ subject.motor_from_joint.T, velocity)
+    torque = limited_torque(
+        subject, asked @ subject.motor_from_joint.T, velocity @ subject.joint_from_motor
+    )
     return position, velocity, torque

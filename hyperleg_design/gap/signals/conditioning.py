@@ -104,7 +104,19 @@ def condition(log: Log, subject: Subject) -> Signals:
     voltage = _voltage(log, ticks)
     command, target, control, others = _command(log, subject, ticks, motion)
     measured = _measured(log, subject, ticks)
-    limited = None if command is None else limited_torque(subject, command, motion.first, voltage)
+    residual: dict[str, np.ndarray] = {}
+    speed = motion.first @ subject.joint_from_motor
+    if (
+        spin := resampled_or_none(log.time, of_motors(log, "motor_velocity", subject), ticks)
+    ) is not None:
+        spin[:, np.abs(subject.joint_from_motor[lacking]).sum(0) > 0] = np.nan
+        if np.isfinite(spin).any():
+            residual["transmission"], refused = transmission.transmission_residual(
+                subject, spin, motion.first, step
+            )
+            notes += refused
+            speed = np.where(np.isfinite(residual["transmission"]), spin, speed)
+    limited = None if command is None else limited_torque(subject, command, speed, voltage)
     believed, more = _believed(log, subject, measured, limited)
     notes += more
     own = (
@@ -122,7 +134,6 @@ def condition(log: Log, subject: Subject) -> Signals:
     needed = needed + friction.friction_torque(
         subject, motion.value, motion.first, None if shaken is None else shaken.speed
     )
-    residual: dict[str, np.ndarray] = {}
     if ground.pad_force is not None:
         pushed, wrench = pads.contact_torque(
             subject,
@@ -153,15 +164,6 @@ def condition(log: Log, subject: Subject) -> Signals:
             )
     if control is not None:
         residual["control"] = control
-    if (
-        spin := resampled_or_none(log.time, of_motors(log, "motor_velocity", subject), ticks)
-    ) is not None:
-        spin[:, np.abs(subject.joint_from_motor[lacking]).sum(0) > 0] = np.nan
-        if np.isfinite(spin).any():
-            residual["transmission"], refused = transmission.transmission_residual(
-                subject, spin, motion.first, step
-            )
-            notes += refused
     if others:
         notes.append(
             f"motors whose logged commands are not those of a controller with stiffness and "
@@ -178,6 +180,7 @@ def condition(log: Log, subject: Subject) -> Signals:
         acceleration=motion.second,
         base=base,
         sensed=sensed_velocity(resampled(log.time, velocity, ticks), motion, step),
+        motor_speed=speed,
         target=target,
         command=command,
         measured=measured,
@@ -236,14 +239,14 @@ def at_stop(subject: Subject, position: np.ndarray) -> np.ndarray:
 
 
 def limited_torque(
-    subject: Subject, torque: np.ndarray, velocity: np.ndarray, voltage: np.ndarray | None = None
+    subject: Subject, torque: np.ndarray, speed: np.ndarray, voltage: np.ndarray | None = None
 ) -> np.ndarray:
     """Bring motor torques within the peak torque and DC-motor line of the nominal motors.
 
     Args:
         subject: the robot.
         torque: of the motors `(t, m)` [Nm].
-        velocity: of the joints `(t, n)` [rad/s].
+        speed: of the motors `(t, m)` [rad/s].
         voltage: of the battery `(t,)` [V], which motors without current control follow.
 
     Returns:
@@ -252,9 +255,8 @@ def limited_torque(
     torque = np.clip(torque, -subject.torque_limit, subject.torque_limit)
     line = np.isfinite(subject.stall_torque) & np.isfinite(subject.no_load_speed)
     if line.any():
-        speed = velocity @ subject.joint_from_motor[:, line]
         stall = subject.stall_torque[line]
-        droop = stall / subject.no_load_speed[line] * speed
+        droop = stall / subject.no_load_speed[line] * speed[:, line]
         stall = stall * over_nominal(subject, voltage)[:, line]
         peak = subject.torque_limit[line]
         torque[:, line] = np.clip(

@@ -66,6 +66,9 @@ class Signals:
     base: BaseMotion | None
     sensed: np.ndarray
     """Velocity that controllers see, see `sensed` `(t, n)` [rad/s]."""
+    motor_speed: np.ndarray
+    """Speed that the DC-motor lines of motors follow `(t, m)` [rad/s]: the logged one, else that of
+    their joints' motion, which is smoother than what an impact does to a motor."""
     target: np.ndarray | None
     """Position target `(t, n)` [rad]."""
     command: np.ndarray | None

@@ -298,7 +298,7 @@ def residual_of(one: Signals) -> np.ndarray:
     if one.measured is None:
         return one.residual["motion"]
     assert one.command is not None
-    commanded = limited_torque(one.subject, one.command.copy(), one.velocity, one.voltage)
+    commanded = limited_torque(one.subject, one.command.copy(), one.motor_speed, one.voltage)
     return one.residual["motion"] + applied(one.subject.joint_from_motor, commanded - one.believed)
 
 

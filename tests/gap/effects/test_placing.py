@@ -30,8 +30,9 @@ def test_limits_are_those_of_conditioning():
     subject = load_subject("hyperleg")
     rng = np.random.default_rng(1)
     velocity, torque = rng.normal(0, 8, (500, 14)), rng.normal(0, 4, (500, 14))
-    signals = SimpleNamespace(subject=subject, velocity=velocity, supplied=np.ones((1, 14)))
-    whole = limited_torque(subject, torque.copy(), velocity)
+    speed = velocity @ subject.joint_from_motor
+    signals = SimpleNamespace(subject=subject, motor_speed=speed, supplied=np.ones((1, 14)))
+    whole = limited_torque(subject, torque.copy(), speed)
     assert not np.allclose(whole, torque)
     for motor in range(14):
         np.testing.assert_allclose(

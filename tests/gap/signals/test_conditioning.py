@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import robots
@@ -170,3 +172,49 @@ def test_stops_push_with_a_force_that_nobody_knows(robot_files, runs, tmp_path):
             np.isnan(signals.residual["motion"][:, 0]),
             hits & (signals.position[:, 0] > high - 0.003),
         )
+
+
+def test_the_speed_of_motors_is_the_logged_one_where_it_goes_with_the_joints(robot_files):
+    log = robots.geared_run("joint", ("hip", "knee"), seed=1)
+    subject = load_subject(robot_files["geared"], [log])
+
+    def speeds(factor):
+        """Of motors, logged as they are times a factor, and of their joints' motion."""
+        told = {c: factor * v for c, v in log.signals.items() if c.startswith("motor_velocity/")}
+        signals = condition(log.changed(signals={**log.signals, **told}), subject)
+        return signals.motor_speed, signals.velocity @ subject.joint_from_motor
+
+    own, of_joints = speeds(1.0)
+    assert 0 < np.abs(own - of_joints).max() < 0.1 * np.abs(own).max()
+    np.testing.assert_allclose(speeds(1.1)[0], 1.1 * own)
+    np.testing.assert_allclose(speeds(3.0)[0], of_joints)  # of another unit: not used
+
+
+def test_a_motor_follows_its_own_speed_down_its_line(robot_files):
+    """Where a motor's speed jumps, as at an impact, only its torque sensor's error is left of its
+    drive's residual.
+    """
+    log = robots.geared_run("joint", ("hip", "knee"), seed=1)
+    spin = log.stack("motor_velocity", ("hip", "knee"))
+    spin[len(spin) // 2] *= 2
+    stall, free = 1.0, 1.2 * float(np.abs(spin).max())
+    subject = load_subject(robot_files["geared"], [log])
+    subject = replace(
+        subject,
+        stall_torque=np.full(2, stall),
+        no_load_speed=np.full(2, free),
+        torque_limit=np.full(2, 10.0),
+    )
+    given = np.clip(5.0, None, stall * (1 - spin / free))
+    torques = {
+        f"{kind}/{m}": values[:, i]
+        for kind, values in {
+            "motor_torque": given + 0.01,
+            "motor_torque_command": np.full_like(spin, 5.0),
+            "motor_velocity": spin,
+        }.items()
+        for i, m in enumerate(("hip", "knee"))
+    }
+    kept = {c: v for c, v in log.signals.items() if c.startswith(("position/", "velocity/"))}
+    signals = condition(log.changed(signals=kept | torques), subject)
+    np.testing.assert_allclose(signals.residual["drive"], 0.01, atol=1e-9)

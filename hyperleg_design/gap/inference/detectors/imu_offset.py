@@ -4,14 +4,16 @@ from elsewhere says it should.
 A gyro minus the rate of a logged orientation, and an accelerometer minus the acceleration of a
 logged velocity with gravity, are noise about the sensors' errors; over seconds their mean is known
 a hundred times better than sensors are usually calibrated. No mass, friction or ground has a part
-in it. Only a vertical that leans cannot be told from an accelerometer's error across it: that is
-told as such.
+in it. Only a vertical that leans, or a sensor that is turned against the base, looks like an
+accelerometer's error across the vertical: what leans stays in the world, what is turned goes with
+the force that is felt, and an error of the sensor does neither. Of a base that hardly turns, it is
+told that something leans.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,8 +32,8 @@ PLACE = ImuBias.identifier, IMU
 OFFSET = "offset"
 CERTAIN = 5.0
 """Its standard errors, at least."""
-PIECE = 1.0
-"""Of the means whose scatter gives the standard error [s]."""
+PIECE, SHORTEST = 1.0, 0.25
+"""Of the means whose scatter gives the standard error, and of those of short logs at least [s]."""
 LEAST_PIECES = 4
 UPRIGHT = 0.15
 """Vertical part of an accelerometer's error over its horizontal one, below which it may be a
@@ -96,12 +98,11 @@ def imu_offset(
         references: logs of the healthy robot; an error that they have, too, is none of these.
         beyond: usual deviations from which an error is a finding, `CauseRules.usual`.
     """
-    means, errors, halves = (np.array(part) for part in zip(*map(_means, signals), strict=True))
-    mean, error = _together(means, errors)
+    logs = [_compared(one) for one in signals]
+    means = np.array([one.mean for one in logs])
+    mean, error = _together(logs)
     if references:
-        healthy, unsure = _together(
-            *(np.array(part) for part in zip(*(_means(one)[:2] for one in references), strict=True))
-        )
+        healthy, unsure = _together([_compared(one) for one in references])
         told = np.isfinite(healthy)
         mean, error = (
             np.where(told, mean - healthy, mean),
@@ -111,7 +112,9 @@ def imu_offset(
     clear = np.isfinite(mean) & (over > beyond) & (np.abs(mean) > CERTAIN * error)
     if not clear.any():
         return None
-    leans = _leans(signals[0], mean[3:]) if not clear[:3].any() else 0.0
+    leans = 0.0
+    if not clear[:3].any() and not _stays_in_sensor(logs):
+        leans = _leans(signals[0], mean[3:])
     if 0 < leans < LEANING:
         return None
     part = (
@@ -119,7 +122,7 @@ def imu_offset(
         if np.nanmax(over[:3], initial=0) >= np.nanmax(over[3:], initial=0)
         else slice(3, 6)
     )
-    apart = means[:, part] if len(means) > 1 else halves[0][:, part]
+    apart = means[:, part] if len(means) > 1 else logs[0].halves[:, part]
     others = (np.nansum(apart, 0) - apart) / max(len(apart) - 1, 1)
     left = float(np.sqrt(np.nanmean(np.sum((apart - others) ** 2, -1))))
     size = float(np.linalg.norm(mean[part]))
@@ -134,27 +137,40 @@ def imu_offset(
     )
 
 
-def _means(signals: Signals) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mean error of gyro and accelerometer in the sensor's axes `(6,)`, its standard error, and
-    means of both halves `(2, 6)`; NaN if unknown.
-    """
+@dataclass(frozen=True, eq=False)
+class _Compared:
+    """Error of gyro and accelerometer in one log, in the sensor's axes; NaN where unknown."""
+
+    mean: np.ndarray = field(default_factory=lambda: np.full(6, np.nan))
+    """`(6,)`"""
+    error: np.ndarray = field(default_factory=lambda: np.full(6, np.nan))
+    """Standard error of the mean `(6,)`."""
+    halves: np.ndarray = field(default_factory=lambda: np.full((2, 6), np.nan))
+    """Means of both halves `(2, 6)`."""
+    pieces: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    """Means of the accelerometer's over pieces of the log `(pieces, 3)`."""
+    leaning: np.ndarray = field(default_factory=lambda: np.zeros((0, 3, 5)))
+    """Means of what a radian makes of it, by which the vertical leans about two directions, or the
+    sensor is turned about three `(pieces, 3, 5)`."""
+
+
+def _compared(signals: Signals) -> _Compared:
+    """What the IMU tells less what the base's motion from elsewhere says it should."""
     log, subject, ticks = signals.log, signals.subject, signals.time
-    unknown = np.full(6, np.nan), np.full(6, np.nan), np.full((2, 6), np.nan)
     quaternion, gyro, felt, velocity = (
         known(log, kind) for kind in ("base_orientation", "gyro", "accelerometer", "base_velocity")
     )
     if quaternion is None or not subject.floating:
-        return unknown
+        return _Compared()
     turning = orientation(log, quaternion, ticks)
     rate, turn = spin(turning)
-    apart = np.full((len(ticks), 6), np.nan)
+    apart, leaning = np.full((len(ticks), 6), np.nan), np.full((len(ticks), 3, 5), np.nan)
     if gyro is not None:
         apart[:, :3] = on_ticks(log, gyro, ticks) - rate @ subject.imu_rotation
     if felt is not None and velocity is not None:
+        rotation = quaternion_rotation(turning.value)
         world = np.einsum(
-            "tji,tj->ti",
-            quaternion_rotation(turning.value),
-            smooth(log.time, velocity, ticks).first - subject.gravity,
+            "tji,tj->ti", rotation, smooth(log.time, velocity, ticks).first - subject.gravity
         )
         at_sensor = (
             world
@@ -162,17 +178,44 @@ def _means(signals: Signals) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             + np.cross(rate, np.cross(rate, subject.imu_position))
         )
         apart[:, 3:] = on_ticks(log, felt, ticks) - at_sensor @ subject.imu_rotation
-    apart = apart[signals.valid]
-    length = max(round(PIECE / signals.step), 1)
-    if len(apart) < LEAST_PIECES * length:
-        return unknown
-    pieces = np.array([piece.mean(0) for piece in np.array_split(apart, len(apart) // length)])
-    halves = np.array([half.mean(0) for half in np.array_split(apart, 2)])
-    return apart.mean(0), pieces.std(0, ddof=1) / np.sqrt(len(pieces)), halves
+        tilted = np.cross(subject.gravity, np.eye(3))[np.argsort(np.abs(subject.gravity))[:2]]
+        turned = np.cross(at_sensor[:, None], np.eye(3))
+        leaning = np.concatenate([tilted @ rotation, turned], 1) @ subject.imu_rotation
+        leaning = leaning.swapaxes(1, 2)
+    apart, leaning = apart[signals.valid], leaning[signals.valid]
+    longest, shortest = (max(round(x / signals.step), 1) for x in (PIECE, SHORTEST))
+    number = max(len(apart) // longest, LEAST_PIECES)
+    if len(apart) < number * shortest:
+        return _Compared()
+    pieces = np.array([piece.mean(0) for piece in np.array_split(apart, number)])
+    return _Compared(
+        apart.mean(0),
+        pieces.std(0, ddof=1) / np.sqrt(number),
+        np.array([half.mean(0) for half in np.array_split(apart, 2)]),
+        pieces[:, 3:],
+        np.array([piece.mean(0) for piece in np.array_split(leaning, number)]),
+    )
 
 
-def _together(means: np.ndarray, errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _stays_in_sensor(logs: Sequence[_Compared]) -> bool:
+    """Whether an accelerometer's error is constant in its own axes, and neither a vertical that
+    leans nor a sensor that is turned against the base explains it nearly as well, by least squares.
+    """
+    value = np.concatenate([one.pieces for one in logs])
+    columns = np.concatenate([one.leaning for one in logs])
+    known = np.isfinite(value).all(-1)
+    value, columns = value[known], columns[known].reshape(-1, 5)
+    if not len(value):
+        return False
+    constant = float(np.sum((value - value.mean(0)) ** 2))
+    left = value.ravel() - columns @ np.linalg.lstsq(columns, value.ravel())[0]
+    variance = constant / max(3 * len(value) - 3, 1)
+    return float(left @ left) - constant > CERTAIN**2 * variance
+
+
+def _together(logs: Sequence[_Compared]) -> tuple[np.ndarray, np.ndarray]:
     """Mean of logs and its standard error `(6,)`, from their own and from how they differ."""
+    means, errors = np.array([one.mean for one in logs]), np.array([one.error for one in logs])
     count = np.isfinite(means).sum(0)
     own = np.sqrt(np.nansum(errors**2, 0)) / np.maximum(count, 1)
     middle = np.where(count > 0, np.nansum(means, 0) / np.maximum(count, 1), np.nan)

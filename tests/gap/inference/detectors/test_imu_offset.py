@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from hyperleg_design.gap.inference.detectors.imu_offset import imu_offset
 from hyperleg_design.gap.signals.conditioning import condition
@@ -86,6 +87,23 @@ def swaying(subject):
     return Log("swaying", time, signals, Metadata(base="floating"))
 
 
+def still_base(log, subject):
+    """The same log of a base that does not move."""
+    felt = np.array([0.0, 0.0, 9.81]) @ subject.imu_rotation
+    rest = {
+        "gyro": (0, 0, 0),
+        "accelerometer": felt,
+        "base_orientation": (1, 0, 0, 0),
+        "base_velocity": (0, 0, 0),
+    }
+    rng, signals = np.random.default_rng(2), dict(log.signals)
+    for kind, values in rest.items():
+        axes = "wxyz" if kind == "base_orientation" else "xyz"
+        for axis, value in zip(axes, values, strict=True):
+            signals[f"{kind}/{axis}"] = value + 1e-3 * rng.normal(size=len(log.time))
+    return log.changed(signals=signals)
+
+
 def off(log, gyro=(0, 0, 0), felt=(0, 0, 0)):
     """A log whose IMU has errors."""
     added = {f"gyro/{a}": e for a, e in zip("xyz", gyro, strict=True)} | {
@@ -134,12 +152,52 @@ def test_the_sensors_own_axes_are_told(swaying, subject):
     assert [one.parameters[f"gyro_{a}"].value for a in "xyz"] == pytest.approx(GYRO_OFF, abs=0.002)
 
 
+def rotated(log, kind, rotation):
+    """A log whose vectors of a kind are turned, tick by tick or all alike."""
+    values = np.einsum("...ij,...j->...i", rotation, log.vector(kind))
+    return log.changed(
+        signals={**log.signals, **{f"{kind}/{a}": v for a, v in zip("xyz", values.T, strict=True)}}
+    )
+
+
+def world_from_base(time):
+    """Rotation of the swaying base `(t, 3, 3)`."""
+    angles = np.stack([0.4 * np.sin(time), 0.2 * np.sin(2 * time)], -1)
+    return Rotation.from_euler("ZY", angles).as_matrix()
+
+
 def test_a_vertical_that_leans_is_not_blamed_on_the_accelerometer(swaying, subject):
+    """Nor is a sensor that is turned against the base."""
+    tilt = Rotation.from_rotvec([0.03, -0.05, 0.0]).as_matrix()
+    base = world_from_base(swaying.time)
+    sensor = base @ subject.imu_rotation
+    for rotation in (sensor.swapaxes(1, 2) @ tilt @ sensor, tilt):
+        told = found(subject, rotated(swaying, "accelerometer", rotation))
+        assert told.leans == pytest.approx(np.hypot(0.03, 0.05), rel=0.1)
+        assert "leans by 0.05" in told.says
+    slight = Rotation.from_rotvec([0.006, 0.0, 0.0]).as_matrix()
+    assert found(subject, rotated(swaying, "accelerometer", slight)) is None
+
+
+def test_what_stays_in_the_sensor_while_the_base_turns_is_no_leaning_vertical(swaying, subject):
     told = found(subject, off(swaying, felt=(0.5, 0.3, 0.0)))
-    assert told.leans == pytest.approx(np.hypot(0.5, 0.3) / 9.81, rel=0.1)
-    assert "leans by 0.05" in told.says
-    assert found(subject, off(swaying, felt=(0.06, 0.0, 0.0))) is None
-    assert found(subject, off(swaying, felt=(0.5, 0.3, 0.4))).leans == 0
+    assert told.leans == 0
+    assert told.kind == "accelerometer"
+    # of a base that stands still, both feel the same
+    still = still_base(swaying, subject)
+    assert found(subject, off(still, felt=(0.5, 0.3, 0.0))).leans == pytest.approx(
+        np.hypot(0.5, 0.3) / 9.81, rel=0.1
+    )
+    assert found(subject, off(still, felt=(0.5, 0.3, 0.4))).leans == 0
+
+
+def test_a_log_of_two_seconds_is_enough(swaying, subject):
+    short = swaying.changed(
+        time=swaying.time[:400], signals={c: v[:400] for c, v in swaying.signals.items()}
+    )
+    one = found(subject, off(short, felt=(0.5, 0.0, 0.0)))
+    assert one.parameters["accelerometer_x"].value == pytest.approx(0.5, abs=0.02)
+    assert found(subject, short) is None
 
 
 def test_errors_as_usual_and_those_of_references_are_no_news(swaying, subject):
