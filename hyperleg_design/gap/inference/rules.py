@@ -108,6 +108,8 @@ class SearchRules:
     """Most places or groups of places in one set [-]."""
     candidates: int = 8
     """Effects at places that are fitted to the end in one step [-]."""
+    flexible: int = 2
+    """Flexible effects at places that are fitted beside them [-]."""
     starts: int = 2
     """Starts that a nonlinear effect is fitted from [-]."""
     steps: int = 5
