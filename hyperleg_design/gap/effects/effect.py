@@ -63,6 +63,10 @@ class Effect(ABC):
     listed: ClassVar[bool] = True
     """Whether the catalogue has it, so that answers name it as a cause. One that it lacks competes
     with those that it has; where it wins, something unlisted acts, which `describe` tells."""
+    flexible: ClassVar[bool] = False
+    """Whether it is no effect of the catalogue but a function of many shapes, each of whose sizes
+    shrinks to nothing. It competes in the logs under test alone, as reference logs tell by
+    themselves what stands, and pays for no parameter beside what the marginal likelihood takes."""
     rare: ClassVar[float] = 0.0
     """Log prior odds over those of an effect that looks like it, of one that is rarer [nat]."""
     driver: ClassVar[str] = ""

@@ -25,7 +25,7 @@ def prior_odds(cause: Cause, values: np.ndarray) -> float:
     """Of a cause at some values `(k,)` [nat]."""
     free = int((~cause.shape).sum() if cause.linear else (cause.high > cause.low).sum())
     effect = WEIGHED[cause.effect]
-    found = -PER_PARAMETER * free + effect.rare
+    found = effect.rare if effect.flexible else -PER_PARAMETER * free + effect.rare
     if cause.unseen:
         found += effect.unseen
     if effect.described and values[0] < HALF * cause.low[0] < 0:

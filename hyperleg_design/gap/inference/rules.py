@@ -108,6 +108,8 @@ class SearchRules:
     """Most places or groups of places in one set [-]."""
     candidates: int = 8
     """Effects at places that are fitted to the end in one step [-]."""
+    flexible: int = 2
+    """Flexible effects at places that are fitted beside them [-]."""
     starts: int = 2
     """Starts that a nonlinear effect is fitted from [-]."""
     steps: int = 5
@@ -140,8 +142,9 @@ class PosteriorRules:
     interval: float = 1.4
     """Factor on the standard deviations of parameters [-]: what models of friction and drives get
     wrong is in none of them (developed)."""
-    most_certain: float = 0.985
-    """Highest probability that is stated [-] (assumed)."""
+    most_certain: float = 0.94
+    """Highest probability that is stated [-] (measured: of 71 answers to development cases of the
+    benchmark with 0.95 or more, 67 were right; without any one of its robots 93 to 96 %)."""
 
 
 @dataclass(frozen=True)

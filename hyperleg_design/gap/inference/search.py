@@ -143,7 +143,10 @@ class Search:
         least = rules.least
         if instead is not None:
             least = max(least, gains.get(instead.name, least))
-        chosen = [name for name in names if gains[name] > least][: rules.candidates]
+        promising = [name for name in names if gains[name] > least]
+        flexible = [name for name in promising if WEIGHED[name[0]].flexible]
+        chosen = [name for name in promising if name not in flexible][: rules.candidates]
+        chosen += flexible[: rules.flexible]
         fitted = screen.spread(
             lambda name: self.best_of(promises[name][: rules.starts], current),
             chosen,
@@ -184,7 +187,8 @@ class Search:
         if current.causes:
             start = self._gain(current.causes, scales)
         for effect, standing in sorted({(name[0], name[2]) for name in promises} - acting):
-            if not WEIGHED[effect].linear or self.count[effect] < 2:
+            own_kind = WEIGHED[effect]
+            if not own_kind.linear or own_kind.flexible or self.count[effect] < 2:
                 continue
             own = sorted(name for name in promises if (name[0], name[2]) == (effect, standing))
             causes = [self.fits.candidate(promises[name][0], current) for name in own]
@@ -231,9 +235,11 @@ def traces_of(
 
 def _traced(evidence: Evidence, place: tuple[str, str]) -> list[screen.Traces]:
     """In the logs under test and, with references, in all logs."""
-    whole = screen.trace(evidence.samples, WEIGHED[place[0]], place[1])
+    flexible = WEIGHED[place[0]].flexible
+    samples = evidence.tests if flexible else evidence.samples
+    whole = screen.trace(samples, WEIGHED[place[0]], place[1])
     if isinstance(whole, screen.NotJudged):
-        return [whole] * (2 if evidence.references else 1)
+        return [whole] * (2 if evidence.references and not flexible else 1)
     count = len(evidence.tests.value)
     own: screen.Traces
     if isinstance(whole, list):
@@ -249,7 +255,7 @@ def _traced(evidence: Evidence, place: tuple[str, str]) -> list[screen.Traces]:
             own = []
     if not own:
         own = screen.NotJudged(*place, screen.UNEXCITED)
-    return [own, whole] if evidence.references else [own]
+    return [own, whole] if evidence.references and not flexible else [own]
 
 
 def ungaining(cause: Cause) -> Cause:

@@ -54,7 +54,7 @@ def test_nothing_is_none():
 def test_a_cause_far_ahead_is_explained():
     found = answer(hypothesis(0.0), hypothesis(30.0, ("a", "x")), hypothesis(10.0, ("b", "x")))
     assert found.verdict == "explained"
-    assert found.probability["a", "x", False] > 0.95
+    assert found.probability["a", "x", False] == RULES.posterior.most_certain
     assert found.closed == pytest.approx(1.0)
     assert found.remainder == 0.0
     assert [candidate.name for _, candidate in found.rivals] == [("b", "x", False)]

@@ -18,6 +18,7 @@ from hyperleg_design.gap.effects.placing import (
     motor_strength,
     motor_velocity,
 )
+from hyperleg_design.gap.effects.waves import fitted_waves, peaks
 from hyperleg_design.gap.signals.filtering import HIGHEST
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
@@ -159,29 +160,13 @@ class Cogging(MotorTorque):
             sliding(signals)[:, main],
             signals.acceleration[:, main],
         ]
-        basis = np.linalg.qr(np.stack(other, -1)[known])[0]
-
-        def alone(rows: np.ndarray) -> np.ndarray:
-            return np.asarray(rows - basis @ (basis.T @ rows))
-
-        wanted = alone(residual[known])
+        beside = np.linalg.qr(np.stack(other, -1)[known])[0]
         slow = float(np.median(np.abs(motor_velocity(signals, motor)[known])))
         orders = ORDERS[(ORDERS <= ALWAYS) | (ORDERS * slow <= 2 * np.pi * HIGHEST)]
-        found = np.empty((len(orders), 3))
-        for row, order in enumerate(orders):
-            waves = alone(
-                np.stack([np.cos(order * angle[known]), np.sin(order * angle[known])], -1)
-            )
-            gram = waves.T @ waves
-            gram[np.diag_indices(2)] += 1e-4 * known.sum()
-            right = waves.T @ wanted
-            found[row, 1:] = np.linalg.solve(gram, right)
-            found[row, 0] = right @ found[row, 1:]
-        gain = np.concatenate([[-np.inf], found[:, 0], [-np.inf]])
-        peaks = np.flatnonzero((gain[1:-1] >= gain[:-2]) & (gain[1:-1] >= gain[2:]))
-        best = peaks[np.argsort(-found[peaks, 0], kind="stable")[:TRIED]]
+        gains, amplitudes = fitted_waves(residual[known], angle[known], orders, beside)
+        best = peaks(gains, TRIED)
         low, high = self.bounds(location, subject)
-        return np.clip(np.column_stack([found[best, 1:], orders[best]]), low, high)
+        return np.clip(np.column_stack([amplitudes[best], orders[best]]), low, high)
 
 
 @dataclass(frozen=True, eq=False)
