@@ -56,5 +56,5 @@ def peaks(gains: np.ndarray, count: int) -> np.ndarray:
         Indices, `count` at most.
     """
     padded = np.concatenate([[-np.inf], gains, [-np.inf]])
-    found = np.flatnonzero((padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:]))
-    return found[np.argsort(-gains[found], kind="stable")[:count]]
+    summits = np.flatnonzero((padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:]))
+    return summits[np.argsort(-gains[summits], kind="stable")[:count]]

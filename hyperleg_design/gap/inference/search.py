@@ -111,12 +111,12 @@ class Search:
 
     def _fewer(self, current: Hypothesis) -> list[Hypothesis]:
         """A hypothesis without each of its candidates."""
-        found = []
+        smaller = []
         for place in range(len(current.candidates)):
             rest = current.candidates[:place] + current.candidates[place + 1 :]
-            found.append(self._known(rest) or self.fits.fit(rest, current.scales))
-            self.fitted[found[-1].names] = found[-1]
-        return found
+            smaller.append(self._known(rest) or self.fits.fit(rest, current.scales))
+            self.fitted[smaller[-1].names] = smaller[-1]
+        return smaller
 
     def _known(self, candidates: Sequence[Candidate | Promise]) -> Hypothesis | None:
         """The hypothesis of some candidates, where it was fitted before."""
@@ -152,14 +152,14 @@ class Search:
             chosen,
             self.threads,
         )
-        found = [one for one in fitted if one is not None]
-        found += [
+        hypotheses = [one for one in fitted if one is not None]
+        hypotheses += [
             self._known((*current.candidates, one))
             or self.fits.fit((*current.candidates, one), current.scales)
             for gain, one in groups[: rules.groups]
             if gain > least
         ]
-        return found
+        return hypotheses
 
     def best_of(self, promises: Sequence[Promise], current: Hypothesis) -> Hypothesis | None:
         """The best fit of an effect at a place beside a hypothesis, from several starts."""
@@ -172,8 +172,10 @@ class Search:
             candidate = self.fits.candidate(promise, current)
             if candidate and not any(_alike(candidate, other) for other in apart):
                 apart.append(candidate)
-        found = [self.fits.fit((*current.candidates, one), current.scales) for one in apart]
-        return max(found, key=lambda one: one.score, default=None)
+        fits_of_starts = [
+            self.fits.fit((*current.candidates, one), current.scales) for one in apart
+        ]
+        return max(fits_of_starts, key=lambda one: one.score, default=None)
 
     def everywhere(
         self, promises: Mapping[Name, Sequence[Promise]], current: Hypothesis
@@ -183,12 +185,12 @@ class Search:
         """
         scales = eased(self.evidence, current.scales, self.rules)
         acting = {(one.effect, one.standing) for one in current.candidates}
-        start, found = 0.0, []
+        start, joined_effects = 0.0, []
         if current.causes:
             start = self._gain(current.causes, scales)
         for effect, standing in sorted({(name[0], name[2]) for name in promises} - acting):
-            own_kind = WEIGHED[effect]
-            if not own_kind.linear or own_kind.flexible or self.count[effect] < 2:
+            effect_tried = WEIGHED[effect]
+            if not effect_tried.linear or effect_tried.flexible or self.count[effect] < 2:
                 continue
             own = sorted(name for name in promises if (name[0], name[2]) == (effect, standing))
             causes = [self.fits.candidate(promises[name][0], current) for name in own]
@@ -196,8 +198,8 @@ class Search:
             if len(joined) < 2:
                 continue
             one = Candidate(effect, EVERYWHERE, joined)
-            found.append((self._gain((*current.causes, *joined), scales) - start, one))
-        return sorted(found, key=lambda entry: (-entry[0], *entry[1].name))
+            joined_effects.append((self._gain((*current.causes, *joined), scales) - start, one))
+        return sorted(joined_effects, key=lambda entry: (-entry[0], *entry[1].name))
 
     def _gain(self, causes: Sequence[Cause], scales: Sequence[Scales]) -> float:
         """What causes gain at fixed scales [nat]."""
@@ -226,11 +228,11 @@ def traces_of(
         threads: that share the work.
     """
     traced = screen.spread(lambda place: _traced(evidence, place), places, threads)
-    found: dict[Name, screen.Traces] = {}
+    by_name: dict[Name, screen.Traces] = {}
     for (effect, location), both in zip(places, traced, strict=True):
         for standing, one in zip((False, True), both, strict=False):
-            found[effect, location, standing] = one
-    return found
+            by_name[effect, location, standing] = one
+    return by_name
 
 
 def _traced(evidence: Evidence, place: tuple[str, str]) -> list[screen.Traces]:

@@ -36,14 +36,14 @@ class Flexible(JointEffect):
     flexible: ClassVar[bool] = True
     linear: ClassVar[bool] = True
     inputs: ClassVar[Mapping[str, str]]
-    """By name, in words that follow on `says`."""
-    says: ClassVar[str]
+    """By name, in words that follow on `sentence`."""
+    sentence: ClassVar[str]
     """What happens at the joint, in words."""
 
     @property
     def sizes(self) -> int:
         """Number of parameters that are sizes of shapes, the first ones."""
-        return sum(not one.shape for one in self.parameters)
+        return sum(not parameter.shape for parameter in self.parameters)
 
     def input_of(self, values: np.ndarray) -> str:
         """Tell the input.
@@ -60,7 +60,9 @@ class Flexible(JointEffect):
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """A share of the torque that the joint is made for."""
         strength = float(joint_strength(subject)[subject.joints.index(location)])
-        return np.array([1.0 if one.shape else SHARE * strength for one in self.parameters])
+        return np.array(
+            [1.0 if parameter.shape else SHARE * strength for parameter in self.parameters]
+        )
 
     @override
     def odds(self, location: str, subject: Subject, values: np.ndarray) -> float:
@@ -69,9 +71,9 @@ class Flexible(JointEffect):
 
     @override
     def variants(self, signals: Signals, location: str) -> np.ndarray:
-        found = np.zeros((len(self.inputs), len(self.parameters)))
-        found[:, -1] = np.arange(len(self.inputs))
-        return found
+        variants = np.zeros((len(self.inputs), len(self.parameters)))
+        variants[:, -1] = np.arange(len(self.inputs))
+        return variants
 
     @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
@@ -88,7 +90,7 @@ class Flexible(JointEffect):
 
     @override
     def describe(self, values: np.ndarray) -> str:
-        return f"{self.says} {self.inputs[self.input_of(values)]}"
+        return f"{self.sentence} {self.inputs[self.input_of(values)]}"
 
 
 def parameters(

@@ -45,8 +45,8 @@ def functions(signals: Signals, joint: int, name: str) -> np.ndarray:
     """
     known = _KNOWN.setdefault(signals, {})
     if (joint, name) not in known:
-        made = np.array(_MADE[name](signals, joint)).reshape(-1, len(signals.time))
-        known[joint, name] = np.nan_to_num(made)
+        shapes = np.array(_FUNCTIONS[name](signals, joint)).reshape(-1, len(signals.time))
+        known[joint, name] = np.nan_to_num(shapes)
     return known[joint, name]
 
 
@@ -106,8 +106,8 @@ def _of_time(signals: Signals, joint: int) -> list[np.ndarray]:
 def _of_others(signals: Signals, joint: int) -> list[np.ndarray]:
     others = [k for k in range(len(signals.subject.joints)) if k != joint]
     near = sorted(others, key=lambda k: (abs(k - joint), k))[: SHAPES // 2]
-    found = [signals.position[:, k] - signals.subject.default[k] for k in near]
-    return found + [signals.velocity[:, k] / SPEED for k in near]
+    states = [signals.position[:, k] - signals.subject.default[k] for k in near]
+    return states + [signals.velocity[:, k] / SPEED for k in near]
 
 
 INPUTS = {
@@ -121,7 +121,7 @@ INPUTS = {
     "others": "other joints",
 }
 """What the torque depends on, in words."""
-_MADE: dict[str, Callable[[Signals, int], list[np.ndarray]]] = {
+_FUNCTIONS: dict[str, Callable[[Signals, int], list[np.ndarray]]] = {
     "position": _of_position,
     "speed": _of_speed,
     "direction": _of_direction,

@@ -40,13 +40,13 @@ class OddReading(Flexible):
     identifier: ClassVar[str] = "odd_reading"
     summary: ClassVar[str] = "a joint's encoder is wrong by an angle that is no constant"
     inputs: ClassVar[Mapping[str, str]] = INPUTS
-    says: ClassVar[str] = "is read with an error"
+    sentence: ClassVar[str] = "is read with an error"
     parameters: ClassVar[tuple[Parameter, ...]] = parameters(2 * len(ORDERS), "rad", INPUTS)
 
     @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """The same angle at every joint."""
-        return np.array([1.0 if one.shape else USUAL for one in self.parameters])
+        return np.array([1.0 if parameter.shape else USUAL for parameter in self.parameters])
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -56,15 +56,15 @@ class OddReading(Flexible):
         if (joint, name) not in known:
             known[joint, name] = _of_shapes(signals, joint, name)
         return {
-            residual: np.tensordot(settings[:, : len(found)], found, 1)
-            for residual, found in known[joint, name].items()
+            residual: np.tensordot(settings[:, : len(traces)], traces, 1)
+            for residual, traces in known[joint, name].items()
         }
 
 
 def _of_shapes(signals: Signals, joint: int, name: str) -> dict[str, np.ndarray]:
     """What each shape leaves, over its size `(shapes, t, rows)` a residual."""
     plain = needed(signals, signals.position)
-    found: dict[str, list[np.ndarray]] = {residual: [] for residual in plain}
+    traces: dict[str, list[np.ndarray]] = {residual: [] for residual in plain}
     for error, rate, bend in _shapes(signals, joint, name):
         motion = [x.copy() for x in (signals.position, signals.velocity, signals.acceleration)]
         for whole, part in zip(motion, (error, rate, bend), strict=True):
@@ -73,8 +73,8 @@ def _of_shapes(signals: Signals, joint: int, name: str) -> dict[str, np.ndarray]
             own = (moved - plain[residual]) / USUAL
             if residual == "motion":
                 own[:, joint] -= signals.subject.spring[joint] * error
-            found[residual].append(own)
-    return {residual: np.array(parts) for residual, parts in found.items()}
+            traces[residual].append(own)
+    return {residual: np.array(parts) for residual, parts in traces.items()}
 
 
 def _shapes(
@@ -85,11 +85,11 @@ def _shapes(
     if name == "time":
         span = max(float(signals.time[-1] - signals.time[0]), 1e-9)
         share = (signals.time - signals.time[0]) / span
-        one, none = np.ones_like(share), np.zeros_like(share)
-        return [(share, one / span, none), (share**2, 2 * share / span, 2 * one / span**2)]
-    found = []
+        ones, zeros = np.ones_like(share), np.zeros_like(share)
+        return [(share, ones / span, zeros), (share**2, 2 * share / span, 2 * ones / span**2)]
+    traces = []
     for k in ORDERS:
         cos, sin = np.cos(k * q), np.sin(k * q)
-        found.append((cos, -k * sin * v, -k * (k * cos * v**2 + sin * a)))
-        found.append((sin, k * cos * v, k * (-k * sin * v**2 + cos * a)))
-    return found
+        traces.append((cos, -k * sin * v, -k * (k * cos * v**2 + sin * a)))
+        traces.append((sin, k * cos * v, k * (-k * sin * v**2 + cos * a)))
+    return traces

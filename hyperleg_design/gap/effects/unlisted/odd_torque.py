@@ -25,7 +25,7 @@ class OddTorque(Flexible):
     identifier: ClassVar[str] = "odd_torque"
     summary: ClassVar[str] = "a joint takes a torque that no effect of the catalogue describes"
     inputs: ClassVar[Mapping[str, str]] = INPUTS
-    says: ClassVar[str] = "takes a torque that depends on"
+    sentence: ClassVar[str] = "takes a torque that depends on"
     parameters: ClassVar[tuple[Parameter, ...]] = parameters(SHAPES, "Nm", INPUTS)
 
     @override

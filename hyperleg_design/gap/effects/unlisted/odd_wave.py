@@ -41,7 +41,7 @@ class OddWave(Flexible):
     identifier: ClassVar[str] = "odd_wave"
     summary: ClassVar[str] = "a joint takes a torque that repeats with load and motor, or time"
     inputs: ClassVar[Mapping[str, str]] = INPUTS
-    says: ClassVar[str] = "takes a torque that repeats"
+    sentence: ClassVar[str] = "takes a torque that repeats"
     parameters: ClassVar[tuple[Parameter, ...]] = parameters(4, "Nm", INPUTS, ("first", "second"))
 
     @override
@@ -51,17 +51,17 @@ class OddWave(Flexible):
 
     @override
     def variants(self, signals: Signals, location: str) -> np.ndarray:
-        found = super().variants(signals, location)
+        variants = super().variants(signals, location)
         joint = signals.subject.joints.index(location)
         residual = signals.residual["motion"][:, joint]
         known = np.isfinite(residual) & signals.valid
         if known.sum() < FEWEST:
-            return found[:0]
+            return variants[:0]
         q, v, a = (x[:, joint] for x in (signals.position, signals.velocity, signals.acceleration))
         way, load = sliding(signals)[:, joint], signals.rigid[:, joint]
         other = [np.ones_like(q), q, np.cos(q), np.sin(q), v, way, a, load]
         beside = np.linalg.qr(np.nan_to_num(np.stack(other, -1)[known]))[0]
-        for row, name in zip(found, INPUTS, strict=True):
+        for row, name in zip(variants, INPUTS, strict=True):
             angle, factor, orders = _waves(signals, joint, name)
             taken = beside
             for place in (4, 5):
@@ -70,7 +70,7 @@ class OddWave(Flexible):
                 turned = order * angle[known, None]
                 wave = factor[known, None] * np.concatenate([np.cos(turned), np.sin(turned)], 1)
                 taken = np.linalg.qr(np.concatenate([taken, wave], 1))[0]
-        return found
+        return variants
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:

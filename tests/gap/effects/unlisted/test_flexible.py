@@ -44,9 +44,9 @@ def test_no_answer_names_one_and_no_simulation_takes_one(pendulum, name):
     assert name in UNLISTED
     with pytest.raises(InputError, match="is added to no simulation"):
         effect.alteration("swing", effect.nulls, subject)
-    says = {effect.describe(row) for row in effect.variants(pendulum(Wrong()), "swing")}
-    assert len(says) == len(effect.inputs)
-    assert all(one.startswith(effect.says) for one in says)
+    sentences = {effect.describe(row) for row in effect.variants(pendulum(Wrong()), "swing")}
+    assert len(sentences) == len(effect.inputs)
+    assert all(one.startswith(effect.sentence) for one in sentences)
 
 
 @pytest.mark.parametrize("name", FLEXIBLE)
