@@ -155,12 +155,14 @@ def condition(log: Log, subject: Subject) -> Signals:
     )
     if measured is not None and limited is not None:
         residual["drive"] = measured - limited
-        copied = ~np.nan_to_num(residual["drive"]).any(0)
-        residual["drive"][:, copied] = np.nan
-        if (copied := copied & _driven(subject)).any():
+        driven = _driven(subject)
+        residual["drive"][:, ~driven] = np.nan
+        copied = driven & (np.nanmax(np.abs(residual["drive"]), 0, initial=0) == 0)
+        copied &= np.isfinite(residual["drive"]).any(0)
+        if copied.any():
             notes.append(
-                f"motors whose measured torques repeat their commands, so that nothing tells what "
-                f"their drives do: {', '.join(np.array(subject.motors)[copied])}"
+                f"motors whose measured torques repeat their commands, as those of drives without "
+                f"any fault do: {', '.join(np.array(subject.motors)[copied])}"
             )
     if control is not None:
         residual["control"] = control

@@ -26,6 +26,7 @@ def test_limits_follow_the_voltage_of_a_design_whose_line_is_known():
         supplied=np.ones((1, 14)),
         subject=subject,
         velocity=velocity,
+        motor_speed=velocity @ subject.joint_from_motor,
         command=asked,
         measured=None,
         believed=asked,
