@@ -155,10 +155,9 @@ def condition(log: Log, subject: Subject) -> Signals:
     )
     if measured is not None and limited is not None:
         residual["drive"] = measured - limited
-        driven = _driven(subject)
-        residual["drive"][:, ~driven] = np.nan
-        copied = driven & (np.nanmax(np.abs(residual["drive"]), 0, initial=0) == 0)
-        copied &= np.isfinite(residual["drive"]).any(0)
+        drive = residual["drive"]
+        drive[:, ~_driven(subject)] = np.nan
+        copied = np.isfinite(drive).any(0) & ~np.nan_to_num(drive).any(0)
         if copied.any():
             notes.append(
                 f"motors whose measured torques repeat their commands, as those of drives without "

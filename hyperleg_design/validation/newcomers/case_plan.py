@@ -71,7 +71,7 @@ class CasePlan(ABC):
 
     @property
     def truth(self) -> Truth:
-        """All that is wrong."""
+        """All that is wrong with the robot of the tests, and with what the case gives."""
         return Truth(
             tuple(self.fault(wrong) for wrong in self.wrongs),
             bool(self.references),

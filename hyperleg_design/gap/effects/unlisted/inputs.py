@@ -74,19 +74,27 @@ def _of_direction(signals: Signals, joint: int) -> list[np.ndarray]:
     return [way * wave for wave in _waves(_angle(signals, joint))]
 
 
-def _load(signals: Signals, joint: int) -> np.ndarray:
-    """What the model needs, over its root mean square `(t,)`."""
+def relative_load(signals: Signals, joint: int) -> np.ndarray:
+    """Scale the torque that the model needs at a joint by its root mean square.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        joint: index of the joint.
+
+    Returns:
+        `(t,)` [-]; unknown ticks zero.
+    """
     load = np.nan_to_num(signals.rigid[:, joint])
     return np.asarray(load / (float(np.sqrt(np.mean(load**2))) or 1.0))
 
 
 def _of_strength(signals: Signals, joint: int) -> list[np.ndarray]:
-    load = _load(signals, joint)
+    load = relative_load(signals, joint)
     return [load * wave for wave in _waves(_angle(signals, joint))]
 
 
 def _of_load(signals: Signals, joint: int) -> list[np.ndarray]:
-    load = _load(signals, joint)
+    load = relative_load(signals, joint)
     way = sliding(signals)[:, joint]
     return [np.abs(load), load * np.abs(load), load**2, load**3, way * load, way * load**2]
 
@@ -99,7 +107,7 @@ def _of_memory(signals: Signals, joint: int) -> list[np.ndarray]:
 def _of_time(signals: Signals, joint: int) -> list[np.ndarray]:
     share = (signals.time - signals.time[0]) / max(signals.time[-1] - signals.time[0], 1e-9)
     way, speed = sliding(signals)[:, joint], signals.velocity[:, joint] / SPEED
-    load, drift = _load(signals, joint), 2 * share - 1
+    load, drift = relative_load(signals, joint), 2 * share - 1
     return [drift, drift**2, way * drift, way * drift**2, speed * drift, load * drift]
 
 

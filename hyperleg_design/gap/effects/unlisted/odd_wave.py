@@ -10,6 +10,7 @@ from typing_extensions import override
 
 from hyperleg_design.gap.effects.placing import at_joint, motor_position
 from hyperleg_design.gap.effects.unlisted.flexible import Flexible, parameters
+from hyperleg_design.gap.effects.unlisted.inputs import relative_load
 from hyperleg_design.gap.effects.waves import fitted_waves
 from hyperleg_design.gap.signals.sliding import sliding
 
@@ -90,6 +91,4 @@ def _waves(signals: Signals, joint: int, name: str) -> tuple[np.ndarray, np.ndar
         orders = 2 * np.pi * np.arange(1.0, FASTEST * span) / span
         return signals.time - signals.time[0], np.ones(len(signals.time)), orders
     motor = int(np.argmax(np.abs(signals.subject.joint_from_motor[joint])))
-    load = np.nan_to_num(signals.rigid[:, joint])
-    size = float(np.sqrt(np.mean(load**2))) or 1.0
-    return motor_position(signals, motor), load / size, TURNS
+    return motor_position(signals, motor), relative_load(signals, joint), TURNS
