@@ -23,11 +23,13 @@ def test_the_shipped_campaign_has_the_seeds_that_its_plan_asks_for() -> None:
     assert len({r.name for r in campaign.runs}) == len(campaign.runs)
 
 
-@pytest.mark.parametrize("name", ["campaign", "campaign_rewards"])
-def test_what_is_compared_starts_alike(name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "preset"), [("campaign", "study"), ("campaign_rewards", "rewards")]
+)
+def test_what_is_compared_starts_alike(name: str, preset: str) -> None:
     """Equal budgets and stages for all that are compared."""
     runs = load_campaign(name).runs
-    assert {(r.preset, r.start) for r in runs if r.compared} == {("study", "walk_guided")}
+    assert {(r.preset, r.start) for r in runs if r.compared} == {(preset, "walk_guided")}
     assert {(r.preset, r.start, r.task) for r in runs if not r.compared} == {
         ("guided", "", "walk_guided")
     }
@@ -35,7 +37,7 @@ def test_what_is_compared_starts_alike(name: str) -> None:
 
 def test_the_rewards_are_switched_one_at_a_time() -> None:
     runs = load_campaign("campaign_rewards").runs
-    for group in ("walk_clock", "walk_power", "walk_force"):
+    for group in ("walk_free", "walk_clock", "walk_power", "walk_force"):
         arms = {(r.design, r.seed) for r in runs if r.group == group}
         assert arms == {(d, s) for d in ("toe", "toe_removed_matched") for s in range(3)}
 
