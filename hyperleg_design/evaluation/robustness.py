@@ -24,7 +24,8 @@ from hyperleg_design.evaluation.result import arrivals_only, by_checkpoint
 from hyperleg_design.evaluation.result_tables import trial_table
 from hyperleg_design.evaluation.shipped import check_different, find_policy
 from hyperleg_design.simulation.alteration import Alteration
-from hyperleg_design.simulation.surroundings import Slope, TorqueConstants, UnevenFloor
+from hyperleg_design.simulation.settings import Randomisation
+from hyperleg_design.simulation.surroundings import Slope, TorqueConstants
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -100,8 +101,6 @@ def _frictionless(design: RobotDesign) -> str:
 
 
 def _pushed(speed: float) -> Setting:
-    from hyperleg_design.simulation.settings import Randomisation
-
     pushes = Randomisation(push_speed=speed, push_interval=PUSH_INTERVAL)
     return Setting(protocol={"randomisation": pushes})
 
@@ -140,8 +139,7 @@ CONDITIONS: dict[str, Condition] = {
     "uneven_floor": Condition(
         "height of bumps 0.2 m apart [m]",
         (0.0, 0.01, 0.02, 0.03, 0.05),
-        lambda level: Setting(alterations=(UnevenFloor(level),) if level else (), ahead=True),
-        walks_only=True,
+        lambda level: Setting(protocol={"randomisation": Randomisation(uneven_floor=level)}),
     ),
 }
 """Conditions by name."""

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.tasks import Task
 
 
-LATER = ("height_share", "slower")
+LATER = ("height_share", "slower", "uneven_floor")
 """Settings of tasks that came after trainings were shipped; 0 where they are not used."""
 
 

@@ -94,7 +94,7 @@ class Environment:
         """The robots, one each."""
         self.alterations = made(alterations, self.designs[0])
         """Of each of the simulated robots."""
-        robots = robots_of(self.designs, task, self.alterations)
+        robots = robots_of(self.designs, task, self.alterations, seed)
         self.models: list[mujoco.MjModel] = [model for model, _ in robots]
         """MuJoCo model of each design; shared, not to be written into."""
         self.layouts: list[Layout] = [layout for _, layout in robots]

@@ -116,6 +116,9 @@ class Randomisation(Checked):
     """Largest sudden change of the pelvis's horizontal velocity [m/s]."""
     push_interval: Any = number("s", 0.1, 1000, default=5.0)
     """Mean time between pushes [s]."""
+    uneven_floor: Any = number("m", 0, 0.3, default=0.0)
+    """From the lowest to the highest point of a floor of random heights [m], one floor for all
+    simulations; see `surroundings.UnevenFloor`."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -22,8 +22,8 @@ STEEPEST = 30.0
 """Slope either way [deg]."""
 CELL = 0.2
 """Edge of a cell of the uneven floor [m]; assumed."""
-LENGTH, WIDTH, BEHIND = 30.0, 10.0, 4.0
-"""Of the uneven floor, and how far it reaches behind the start [m]."""
+EDGE = 90.0
+"""Of the uneven floor, the start in its middle [m]: walks of 20 s at 2 m/s end on it."""
 FLAT = 0.6
 """Half the edge of the flat square that robots start on [m]."""
 _THICK = 0.5
@@ -56,9 +56,7 @@ class Slope(Alteration):
 
 @dataclass(frozen=True, eq=False)
 class UnevenFloor(Alteration):
-    """A floor of random heights, linear between points `CELL` apart, flat where robots start and
-    even beside the strip of `WIDTH` that it covers along x.
-    """
+    """A floor of random heights, linear between points `CELL` apart and flat where robots start."""
 
     height: float
     """From the lowest to the highest point [m]."""
@@ -75,12 +73,10 @@ class UnevenFloor(Alteration):
         Returns:
             The shares [-], `(rows along y, columns along x)`.
         """
-        columns, rows = round(LENGTH / CELL) + 1, round(WIDTH / CELL) + 1
-        heights = np.random.default_rng(self.seed).uniform(size=(rows, columns))
+        at = np.linspace(-EDGE / 2, EDGE / 2, round(EDGE / CELL) + 1)
+        heights = np.random.default_rng(self.seed).uniform(size=(len(at), len(at)))
         heights[0, 0], heights[-1, -1] = 0.0, 1.0  # MuJoCo stretches heights to 0 .. 1
-        x = np.linspace(-BEHIND, LENGTH - BEHIND, columns)
-        y = np.linspace(-WIDTH / 2, WIDTH / 2, rows)
-        heights[np.ix_(np.abs(y) <= FLAT, np.abs(x) <= FLAT)] = 0.5
+        heights[np.ix_(np.abs(at) <= FLAT, np.abs(at) <= FLAT)] = 0.5
         return heights
 
     @override
@@ -93,13 +89,13 @@ class UnevenFloor(Alteration):
             name="uneven",
             nrow=heights.shape[0],
             ncol=heights.shape[1],
-            size=[LENGTH / 2, WIDTH / 2, self.height, _THICK],
+            size=[EDGE / 2, EDGE / 2, self.height, _THICK],
             userdata=heights.ravel().tolist(),
         )
         floor = spec.geom(FLOOR)
         floor.type = mujoco.mjtGeom.mjGEOM_HFIELD
         floor.hfieldname = "uneven"
-        floor.pos = [LENGTH / 2 - BEHIND, 0.0, -self.height / 2]
+        floor.pos = [0.0, 0.0, -self.height / 2]
 
 
 class _Weaker(Live):

@@ -10,12 +10,11 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot.mjcf import FLOOR
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.model import simulation_model
-from hyperleg_design.simulation.settings import Start
+from hyperleg_design.simulation.settings import Randomisation, Start
 from hyperleg_design.simulation.surroundings import (
     CELL,
+    EDGE,
     FLAT,
-    LENGTH,
-    WIDTH,
     Slope,
     TorqueConstants,
     UnevenFloor,
@@ -85,7 +84,7 @@ def test_an_uneven_floor_is_flat_at_the_start_and_as_high_as_asked(hyperleg):
     assert np.ptp(top) == pytest.approx(0.04)
     assert (top == pytest.approx(0.0)) is False
     assert np.sum(np.isclose(top, 0.0, atol=1e-9)) >= (2 * int(FLAT / CELL) + 1) ** 2
-    assert model.hfield_size[0][:2] == pytest.approx([LENGTH / 2, WIDTH / 2])
+    assert model.hfield_size[0][:2] == pytest.approx([EDGE / 2, EDGE / 2])
 
 
 def test_a_robot_stands_on_the_flat_part_of_an_uneven_floor(standing):
@@ -96,6 +95,19 @@ def test_a_robot_stands_on_the_flat_part_of_an_uneven_floor(standing):
     assert not step.terminated.any()
     load = environment.chunks[0].sensors[..., 0::6].sum(-1).mean(0)
     assert load == pytest.approx(environment.layout.weight, rel=0.2)
+
+
+def test_a_task_states_the_floor_and_the_seed_draws_it(hyperleg):
+    task = load_task("walk_free")
+    uneven = task.changed(randomisation=Randomisation(uneven_floor=0.03))
+    floors = []
+    for seed in (1, 1, 2):
+        environment = Environment(hyperleg, uneven, simulations=2, seed=seed, threads=1)
+        assert environment.model.hfield_size[0, 2] == pytest.approx(0.03)
+        floors.append(environment.model.hfield_data.copy())
+        environment.close()
+    np.testing.assert_array_equal(floors[0], floors[1])
+    assert np.abs(floors[0] - floors[2]).max() > 0.5
 
 
 def test_weak_motors_give_less_than_their_drives_believe(standing):

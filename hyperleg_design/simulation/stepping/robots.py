@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.layout import GRAVITY, Layout, layout_of
 from hyperleg_design.simulation.model import simulated_robots, simulation_model
+from hyperleg_design.simulation.surroundings import UnevenFloor
 from hyperleg_design.simulation.tasks import Task
 
 if TYPE_CHECKING:
@@ -18,19 +19,22 @@ if TYPE_CHECKING:
 
 
 def robots_of(
-    designs: Sequence[RobotDesign], task: Task, alterations: Sequence[Alteration]
+    designs: Sequence[RobotDesign], task: Task, alterations: Sequence[Alteration], seed: int = 0
 ) -> list[tuple[mujoco.MjModel, Layout]]:
     """Compile the designs for a task.
 
     Args:
         designs: the robots, one each, in the task's posture.
-        task: gives the physics, and what is observed of a design.
+        task: gives the physics, the floor, and what is observed of a design.
         alterations: of each of the robots.
+        seed: of an uneven floor.
 
     Returns:
         MuJoCo model of each design, shared between callers and not to be written into, and its
         layout.
     """
+    if task.randomisation.uneven_floor:
+        alterations = (UnevenFloor(task.randomisation.uneven_floor, seed), *alterations)
     if not alterations:
         robots = list(simulated_robots(designs, task.physics))
     else:
