@@ -142,6 +142,21 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
     return Campaign(str(data["name"]), processes, ordered)
 
 
+def compared_groups(name: str | Path) -> dict[str, str]:
+    """List the groups of a campaign whose policies are compared.
+
+    Args:
+        name: a shipped name or a YAML file.
+
+    Returns:
+        Names of their tasks by group.
+
+    Raises:
+        InputError: a file that is no campaign.
+    """
+    return {run.group: run.task for run in load_campaign(name).runs if run.compared}
+
+
 def shipped_starts() -> frozenset[str]:
     """Collect the groups whose policies others only start from, in every shipped campaign.
 

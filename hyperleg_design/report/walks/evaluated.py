@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hyperleg_design import resources
 from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, load_protocol
@@ -23,7 +24,11 @@ from hyperleg_design.evaluation.shipped import (
     trainings_text,
 )
 from hyperleg_design.evaluation.versus_paper import VARIANTS
-from hyperleg_design.learning.campaigns.campaign import load_campaign, shipped_starts
+from hyperleg_design.learning.campaigns.campaign import (
+    compared_groups,
+    load_campaign,
+    shipped_starts,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,7 +38,9 @@ if TYPE_CHECKING:
 WALK, T_TEST = "walk", "t_test"
 """Kinds of protocol."""
 CAMPAIGNS = ("campaign", "campaign_t_test")
-"""Campaigns whose arms the analysis plan compares; `campaign_rewards` asks another question."""
+"""Campaigns whose arms the analysis plan compares; the others ask other questions."""
+REWARDS = "campaign_rewards"
+"""Campaign that switches one term of the reward on at a time."""
 TIME_CONSTANTS = (0.01, 0.014, 0.02, 0.028, 0.04)
 """Time constants of the contact over which impacts are shown [s]; the first is the stiffest that
 steps of 5 ms allow."""
@@ -57,6 +64,8 @@ class Evaluated:
     speeds: Mapping[str, pd.DataFrame] = field(default_factory=dict)
     """Trials over commanded speeds, as `robustness` gives them, by group; of groups that observe no
     gait clock and were trained for all of these speeds."""
+    rewards: pd.DataFrame | None = None
+    """Walks under the rewards of `REWARDS`, one row each, with their `group`."""
 
     def groups(self, kind: str) -> list[str]:
         """List the groups of trainings that were run under a kind of protocol.
@@ -142,13 +151,8 @@ class Evaluated:
         Returns:
             One row for each trial; `variant` and `seed` are those of the trainings' folders.
         """
-        chosen = [
-            (p, e) for p, e in zip(self.policies, self.evaluations, strict=True) if p.group == group
-        ]
-        table = trial_table([e for _, e in chosen])
-        table["variant"] = [p.design for p, e in chosen for _ in e.measures]
-        table["seed"] = [p.seed for p, e in chosen for _ in e.measures]
-        return table
+        pairs = zip(self.policies, self.evaluations, strict=True)
+        return _trials([(p, e) for p, e in pairs if p.group == group])
 
 
 def evaluate_shipped(
@@ -179,8 +183,8 @@ def evaluate_shipped(
     Raises:
         InputError: no such folder, a policy that cannot be used, or the same policy twice.
     """
-    policies = _compared(folder)
-    check_different(policy.path for policy in policies)
+    policies, rewarded = _compared(folder), _rewarded(folder)
+    check_different(policy.path for policy in [*policies, *rewarded])
     protocols = {WALK: walk or load_protocol("walk"), T_TEST: t_test or load_protocol("t_test")}
     few = protocols[WALK].changed(trials=min(BAND_TRIALS, int(protocols[WALK].trials)))
     kinds = [
@@ -188,7 +192,7 @@ def evaluate_shipped(
         for p in policies
     ]
     banded = _banded(policies, kinds) if band else []
-    count, done = len(policies) + len(banded) * len(band), 0
+    count, done = len(policies) + len(banded) * len(band) + len(rewarded), 0
 
     def note(evaluation: Evaluation) -> None:
         nonlocal done
@@ -203,7 +207,21 @@ def evaluate_shipped(
         group: robustness([p.path for p in some], [SPEED], protocol=few, workers=processes)
         for group, some in _free(policies, kinds).items()
     }
-    return Evaluated(policies, evaluations, missing_trainings(policies), walks, speeds)
+    rewards = None
+    if rewarded:
+        paths = [policy.path for policy in rewarded]
+        some = evaluate_many(paths, protocols[WALK], workers=processes, kept=0, progress=note)
+        rewards = _trials(list(zip(rewarded, some, strict=True)))
+    return Evaluated(policies, evaluations, missing_trainings(policies), walks, speeds, rewards)
+
+
+def _trials(chosen: Sequence[tuple[Shipped, Evaluation]]) -> pd.DataFrame:
+    """All trials of some policies; group, variant and seed are those of the trainings' folders."""
+    table = trial_table([e for _, e in chosen])
+    table["group"] = [p.group for p, e in chosen for _ in e.measures]
+    table["variant"] = [p.design for p, e in chosen for _ in e.measures]
+    table["seed"] = [p.seed for p, e in chosen for _ in e.measures]
+    return table
 
 
 def _under_own_protocols(
@@ -309,10 +327,30 @@ def coverage_text(trainings: Mapping[str, Sequence[str]]) -> str:
 
 
 def _compared(folder: str | Path | None, *, late: bool = True) -> list[Shipped]:
-    """Policies of the HyperLeg in a folder that are more than starts of others."""
-    starts = shipped_starts()
+    """Policies of the HyperLeg in a folder that are more than starts of others, and that no
+    campaign made for another question than the plan's.
+    """
+    others = shipped_starts() | other_groups()
     policies = shipped_policies(folder, late=late)
-    return [p for p in policies if p.family == "hyperleg" and p.group not in starts]
+    return [p for p in policies if p.family == "hyperleg" and p.group not in others]
+
+
+def _rewarded(folder: str | Path | None) -> list[Shipped]:
+    """Last policies of the trainings under several rewards."""
+    return [p for p in shipped_policies(folder, late=False) if p.group in compared_groups(REWARDS)]
+
+
+def other_groups() -> frozenset[str]:
+    """List the groups that only campaigns other than `CAMPAIGNS` compare.
+
+    Returns:
+        Their names.
+    """
+    groups: dict[bool, set[str]] = {True: set(), False: set()}
+    for name in resources.names("sim"):
+        if name.split("_")[0] == "campaign":
+            groups[name in CAMPAIGNS] |= set(compared_groups(name))
+    return frozenset(groups[False] - groups[True])
 
 
 def _banded(policies: Sequence[Shipped], kinds: Sequence[str]) -> list[Shipped]:

@@ -18,10 +18,12 @@ from hyperleg_design.report.walks.beside_paper import row_facts, rows_beside_pap
 from hyperleg_design.report.walks.evaluated import Evaluated, evaluate_shipped
 from hyperleg_design.report.walks.planned_part import planned_rows, row_numbers
 from hyperleg_design.report.walks.policy_parts import parts
+from hyperleg_design.report.walks.rewards_part import reward_rows
 from hyperleg_design.writing import check_output_folder, output_folder, write_json, write_text
 
-TABLES, PLANNED, RESULTS = "tables.json", "planned.json", "evaluation"
-"""Rows beside the paper, outcomes of the analysis plan, and the trials' tables, beside the page."""
+TABLES, PLANNED, UNDER, RESULTS = "tables.json", "planned.json", "rewards.json", "evaluation"
+"""Rows beside the paper, outcomes of the analysis plan, both arms under several rewards, and the
+trials' tables, beside the page."""
 NO_POLICY = (
     "The folder of trainings holds no finished one, so walks and T-tests are not shown; "
     "hyperleg campaign run trains them."
@@ -61,16 +63,17 @@ def run_paper(
     """
     check_output_folder(out)
     evaluated = evaluate_with_bar(policies, workers=workers, progress=progress, **options)
+    any_policy = bool(evaluated.policies) or evaluated.rewards is not None
     with output_folder(out) as folder:
         sections = (
             [Section(part.title, part.content) for part in policy_parts(evaluated, folder)]
-            if evaluated.policies
+            if any_policy
             else []
         )
         commit = provenance.git_commit()
         page = Page(
             title="Active toes: the paper's experiment, run again",
-            lead=LEAD if evaluated.policies else NO_POLICY,
+            lead=LEAD if any_policy else NO_POLICY,
             sections=sections,
             provenance={
                 **provenance.versions(),
@@ -86,7 +89,7 @@ def policy_parts(evaluated: Evaluated, folder: Path, prefix: str = "") -> list[A
     """Draw and write everything into a page's folder.
 
     Args:
-        evaluated: evaluated policies, at least one.
+        evaluated: evaluated policies, at least one, also of the rewards alone.
         folder: of the page.
         prefix: in front of each figure's name.
 
@@ -108,7 +111,11 @@ def policy_parts(evaluated: Evaluated, folder: Path, prefix: str = "") -> list[A
             for name, rows in planned_rows(evaluated).items()
         },
     )
-    write_results(folder / RESULTS, evaluated.evaluations)
+    if evaluated.evaluations:
+        write_results(folder / RESULTS, evaluated.evaluations)
+    if evaluated.rewards is not None:
+        rows = reward_rows(evaluated.rewards)
+        write_json(folder / UNDER, {g: [row_numbers(r) for r in rs] for g, rs in rows.items()})
     return parts(evaluated, Drawer(folder, prefix))
 
 

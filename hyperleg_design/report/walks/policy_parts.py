@@ -21,6 +21,7 @@ from hyperleg_design.report.walks.evaluated import CAMPAIGNS, T_TEST, WALK, Eval
 from hyperleg_design.report.walks.impact_part import impacts
 from hyperleg_design.report.walks.learning_figures import learning_figure
 from hyperleg_design.report.walks.planned_part import planned, planned_rows
+from hyperleg_design.report.walks.rewards_part import rewards
 from hyperleg_design.report.walks.t_test_part import table_four
 from hyperleg_design.report.walks.walk_figures import operating_points_figure
 
@@ -36,6 +37,8 @@ def parts(evaluated: Evaluated, draw: Drawer) -> list[Part]:
     Returns:
         The parts.
     """
+    if not evaluated.policies:
+        return [rewards(evaluated.rewards)] if evaluated.rewards is not None else []
     list_of_parts = [_what(evaluated)]
     if planned_rows(evaluated):
         list_of_parts.append(planned(evaluated))
@@ -50,6 +53,8 @@ def parts(evaluated: Evaluated, draw: Drawer) -> list[Part]:
     if evaluated.groups(T_TEST):
         list_of_parts.append(table_four(evaluated, draw))
     list_of_parts += [arms(evaluated), confound(evaluated, draw)]
+    if evaluated.rewards is not None:
+        list_of_parts.append(rewards(evaluated.rewards))
     if evaluated.band:
         list_of_parts.append(impacts(evaluated, draw))
     return [*list_of_parts, _motors(evaluated, draw), _learning(evaluated, draw)]
