@@ -20,8 +20,9 @@ def test_the_pool_is_the_same_every_time_and_held_out_designs_are_others() -> No
     assert not np.isin(kept_apart, pool["toe.mass"]).any()
 
 
-def test_shipped_designs_are_inside_their_ranges() -> None:
-    base, spread = load_design("toe"), load_design_spread("toe")
+@pytest.mark.parametrize(("design", "ranges"), [("toe", "toe"), ("toe_removed_matched", "no_toe")])
+def test_shipped_designs_are_inside_their_ranges(design: str, ranges: str) -> None:
+    base, spread = load_design(design), load_design_spread(ranges)
     assert spread.ranges.outside(base) == []
     assert spread.held_out >= 12
     drawn = spread.held_out_designs(base)
