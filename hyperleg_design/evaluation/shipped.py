@@ -258,7 +258,7 @@ def pack(
         source: folder of trainings, such as `results/campaign`.
         target: such as `sim/policies`.
         ship: what to copy of a group's trainings: `all` with late policies, the `last` policy
-            and its critic, or `none`. All by default.
+            and its critic, the `policy` alone, or `none`. All by default.
 
     Returns:
         One a training of the source, by name.
@@ -288,7 +288,9 @@ def pack(
             packed.append(Packed(training.name, 0, 0))
             continue
         policies = [training / POLICY]
-        files = [training / POLICY, training / CRITIC, training / RUN]
+        files = [training / POLICY, training / RUN]
+        if what != "policy":
+            files.append(training / CRITIC)
         if what == "all":
             policies += sorted(training.glob(LATE))
             files += policies[1:]

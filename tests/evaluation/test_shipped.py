@@ -110,6 +110,15 @@ def test_of_a_group_the_last_policy_alone_is_packed_or_nothing(campaign, tmp_pat
     assert (tmp_path / "packed" / "walk_upright-toe-0" / "run.json").exists()
 
 
+@pytest.mark.parametrize(("ship", "critic"), [("last", True), ("policy", False)])
+def test_a_policy_is_packed_with_its_critic_or_alone(campaign, tmp_path, ship, critic):
+    own = campaign / "walk_upright-toe-0"
+    (own / "critic.onnx").write_bytes((own / "policy.onnx").read_bytes())
+    shipped.pack(campaign, tmp_path / "packed", {"walk_upright": ship, "t_test": "none"})
+    assert (tmp_path / "packed" / own.name / "policy.onnx").exists()
+    assert (tmp_path / "packed" / own.name / "critic.onnx").exists() is critic
+
+
 def test_a_learning_curve_is_thinned_by_means(campaign):
     rows = shipped.learning_curve(campaign / "walk_upright-toe-0")
     assert len(rows) == shipped.CURVE_ROWS

@@ -17,8 +17,9 @@ from hyperleg_design.robot.parameters.entries import (
 )
 from hyperleg_design.simulation.tasks import load_task
 
-SHIP = ("all", "last", "none")
-"""What is shipped of a finished training: its last and late policies, its last one, or nothing."""
+SHIP = ("all", "last", "policy", "none")
+"""What is shipped of a finished training: its last and late policies with the critic, the last one
+with the critic, the last one alone, or nothing."""
 
 
 @dataclass(frozen=True)
