@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import tyro
 
@@ -16,9 +16,7 @@ from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.robot.load import changed_robot, load_robot
 from hyperleg_design.robot.parameters.described import RobotDesign
-
-if TYPE_CHECKING:
-    from hyperleg_design.simulation.alteration import Alterations
+from hyperleg_design.simulation.alteration import Alterations
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.gap.checks.rules import RULES
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.results.finding import WARNING, Finding
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
 
 DECLARED = ("robot", "base", "gains", "torque_constant", "gravity")
 """Metadata that belong to the robot and not to a recording."""

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -17,12 +17,10 @@ from hyperleg_design.gap.checks.gates import unusable
 from hyperleg_design.gap.checks.plausibility import implausible
 from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.effects.excitation import Excitation
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.sampling import Column, Sampling, columns_of, sampling_of
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, NOTE, SEVERITIES, WARNING, Finding
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
 
 BOUNDED = (
     "joint_torque",

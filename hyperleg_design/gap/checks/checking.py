@@ -5,17 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.checks.agreement import disagreements
 from hyperleg_design.gap.checks.check import Check, check_log
 from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.readers import open_log
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.writing import check_output_folder, output_folder, write_json
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
 
 
 def check_sources(

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Collection
-from typing import TYPE_CHECKING
 
 from hyperleg_design.errors import meant
 from hyperleg_design.gap.logs.metadata import FIELDS, Metadata
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, WARNING, Finding
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
 
 
 def declarations(metadata: Metadata, subject: Subject | None) -> list[Finding]:

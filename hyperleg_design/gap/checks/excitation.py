@@ -4,18 +4,14 @@ under which load, what was measured.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.sampling import quantum
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 SEGMENT = 16384
 """Most rows of which one spectrum is made."""

@@ -8,16 +8,13 @@ another's motion.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.checks.slopes import DEGREES, fitted_correlations, fitted_slopes
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.results.finding import ERROR, WARNING, Finding
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
 
 RPM = 30 / math.pi
 FEWEST = 2

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import difflib
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,12 +14,10 @@ from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.checks.target_plausibility import implausible_targets
 from hyperleg_design.gap.checks.torque_plausibility import implausible_torques
 from hyperleg_design.gap.logs.frozen import frozen
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, NOTE, WARNING, Finding
 from hyperleg_design.gap.signals.smoothing import bridged
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
 
 
 def implausible(log: Log, subject: Subject | None = None) -> list[Finding]:

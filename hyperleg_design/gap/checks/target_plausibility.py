@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.checks.slopes import DEGREES, fitted_correlations, fitted_slopes
 from hyperleg_design.gap.checks.torque_plausibility import asked_torque
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, WARNING, Finding
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
 
 
 def implausible_targets(log: Log, subject: Subject | None) -> list[Finding]:

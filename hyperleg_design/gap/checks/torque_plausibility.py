@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.checks.slopes import DEGREES, fitted_slopes
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, WARNING, Finding
 from hyperleg_design.gap.signals.channels import applied, of_motors
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
 
 
 def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:

@@ -6,19 +6,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from hyperleg_design.errors import InputError, meant
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.effects.excitation import Excitation, Motion
-    from hyperleg_design.gap.effects.parameter import Parameter
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.simulation.alteration import Alteration
+from hyperleg_design.gap.effects.excitation import Excitation, Motion
+from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.simulation.alteration import Alteration
 
 KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 """Where an effect can sit."""

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.log import Log
 
 REVERSALS = 4
 """That friction needs to be told from a constant torque."""

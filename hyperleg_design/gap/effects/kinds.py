@@ -6,17 +6,15 @@ An effect of another kind of place, or with places of its own, says so in its `l
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.placing import at_joint, at_motor, driven_motors
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 
 
 class JointEffect(Effect):

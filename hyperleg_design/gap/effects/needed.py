@@ -4,15 +4,12 @@ wrongly.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hyperleg_design.gap.model import pads, rigid
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 _LOGGED: WeakKeyDictionary[Signals, dict[str, np.ndarray]] = WeakKeyDictionary()
 

@@ -16,18 +16,15 @@ constant is; so do joint torques.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.machine import machine_of
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.simulation.drives.machine import Machine
+from hyperleg_design.simulation.drives.machine import Machine
 
 SIDES = ("encoders at the joints", "encoders at the rotors")
 """Choices of the parameter `side`: whose positions logs and controllers know."""

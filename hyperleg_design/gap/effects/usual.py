@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from hyperleg_design.gap.effects.placing import joint_strength
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 LATE, LATE_TICKS = 0.001, 0.15
 """[s] and ticks of the log, of all drives; a lag of one of them is half."""

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.experiments import information as info
+from hyperleg_design.gap.experiments.information import Blocks, Place
 from hyperleg_design.gap.experiments.motions import LeftOut, Motion
 from hyperleg_design.gap.experiments.pair import Pair, apart
 from hyperleg_design.gap.experiments.rig_room import Room
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.experiments.information import Blocks, Place
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 CLEAR = 3.0
 """Standard deviations from which an effect of usual size shows, and from which two are told

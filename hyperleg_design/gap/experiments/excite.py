@@ -13,7 +13,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from hyperleg_design.gap.experiments.designed_experiment import (
     CLEAR,
     Experiment,
 )
+from hyperleg_design.gap.experiments.information import Blocks
 from hyperleg_design.gap.experiments.motions import Motion, recommended
 from hyperleg_design.gap.experiments.pair import Pair, apart, pairs_of
 from hyperleg_design.gap.experiments.plan import plan_mapping
@@ -30,13 +30,11 @@ from hyperleg_design.gap.experiments.rehearsal import knows_gains, rehearsed
 from hyperleg_design.gap.experiments.rig_room import room_of
 from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.writing import write_json, write_text
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.experiments.information import Blocks
-    from hyperleg_design.gap.model.subject import Subject
 RATE = 200.0
 """Of the targets [Hz]."""
 RATES = (50.0, 2000.0)

@@ -18,17 +18,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.placing import joint_strength, motor_strength
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.effects.effect import Effect
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 
 NOISE = 0.01
 """Noise of a residual over the strength of its joint or motor [-]; assumed, of the order of torque

@@ -17,7 +17,6 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,9 +25,7 @@ from hyperleg_design.gap.experiments import trajectories
 from hyperleg_design.gap.experiments.rehearsal import closed_loop, knows_gains, swung
 from hyperleg_design.gap.experiments.rig_room import LONG, Room, Use, targets_for, use_of
 from hyperleg_design.gap.model import inertial_regressor, rigid
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 SLOWEST, FASTEST = 0.1, 20.0
 """Of the chirp [Hz]."""

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.effects import LOOK_ALIKES
 from hyperleg_design.gap.experiments import information as info
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.experiments.information import Blocks, Place
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.experiments.information import Blocks, Place
+from hyperleg_design.gap.model.subject import Subject
 
 
 @dataclass(frozen=True)

@@ -7,19 +7,15 @@ robot is taken to follow exactly, with the torque that inverse dynamics asks for
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.rig_spec import rig_spec
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.playback.replay import LONGEST_STEP
 from hyperleg_design.gap.signals.conditioning import limited_torque
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
 
 
 def knows_gains(subject: Subject) -> bool:

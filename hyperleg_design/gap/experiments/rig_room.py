@@ -10,7 +10,6 @@ assumed constants below. Self-collision is not checked.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,9 +17,7 @@ from hyperleg_design.errors import InfeasibleError
 from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength, motor_strength
 from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.machine import machine_of
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 END_SHARE, END_LEAST = 0.08, 0.03
 """Room kept free at each end of a joint's range: share of the range, and least angle [rad];

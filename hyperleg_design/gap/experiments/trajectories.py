@@ -8,12 +8,10 @@ coupled inertia shows as well.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.experiments.rig_room import Room
+from hyperleg_design.gap.experiments.rig_room import Room
 
 GOLDEN = 0.6180339887498949
 """Fraction of a turn between the phases of neighbouring joints: no two of many come together."""

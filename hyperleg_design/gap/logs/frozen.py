@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.log import Log
 
 JUMP = 0.03
 """By which a position may come back from being frozen [rad]."""

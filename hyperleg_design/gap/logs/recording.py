@@ -17,28 +17,24 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.evaluation.result import Evaluation
+from hyperleg_design.evaluation.rollout import Trial
 from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.robot.models import quaternion_matrix
 from hyperleg_design.robot.motors import find_motor
-from hyperleg_design.simulation.drives.actuation import actuation_model
+from hyperleg_design.robot.parameters.described import RobotDesign
+from hyperleg_design.simulation.drives.actuation import ActuationModel, actuation_model
 from hyperleg_design.simulation.drives.told import TOLD
-from hyperleg_design.simulation.layout import GRAVITY
+from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.simulation.layout import GRAVITY, Layout
+from hyperleg_design.simulation.rollout import Recording
 from hyperleg_design.writing import output_folder, write_text
-
-if TYPE_CHECKING:
-    from hyperleg_design.evaluation.result import Evaluation
-    from hyperleg_design.evaluation.rollout import Trial
-    from hyperleg_design.robot.parameters.described import RobotDesign
-    from hyperleg_design.simulation.drives.actuation import ActuationModel
-    from hyperleg_design.simulation.environment import Environment
-    from hyperleg_design.simulation.layout import Layout
-    from hyperleg_design.simulation.rollout import Recording
 
 TRIAL_SIGNALS = (
     "base_position",

@@ -5,12 +5,10 @@ noise and saturation.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.log import Log
 
 DROPOUT = 2.5
 """Steps from which the time between two rows is a dropout."""

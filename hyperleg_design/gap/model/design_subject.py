@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,21 +12,18 @@ from hyperleg_design.gap.model import robot_file
 from hyperleg_design.gap.model.assembling import add_rotors, assembled
 from hyperleg_design.gap.model.feet import pads_of
 from hyperleg_design.gap.model.mechanism import mechanism_of
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.laws.friction import FRICTION_SPEED
 from hyperleg_design.robot.laws.gear import rotor_inertia
 from hyperleg_design.robot.mjcf import mujoco_spec
 from hyperleg_design.robot.motors import find_motor
-from hyperleg_design.robot.parameters.described import prefixed
+from hyperleg_design.robot.parameters.described import RobotDesign, prefixed
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.model import simulation_spec
 from hyperleg_design.sizing.envelope import motor_envelope
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 def of_design(design: RobotDesign, path: Path, base: str, known: set[str] | None) -> Subject:

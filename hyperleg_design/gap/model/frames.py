@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from hyperleg_design.gap.model.mechanism import BASE
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.mechanism import Mechanism
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.mechanism import BASE, Mechanism
+from hyperleg_design.gap.model.subject import Subject
 
 
 def link_poses(

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
-
+from hyperleg_design.gap.model.subject import Subject
 
 PHASES = 48
 """Of a swing over which friction is averaged."""

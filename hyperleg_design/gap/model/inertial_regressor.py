@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.newton_euler import (
     Motion,
     base_start,
@@ -13,10 +12,7 @@ from hyperleg_design.gap.model.newton_euler import (
     cross,
     to_parent,
 )
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.base import BaseMotion
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 
 def regressors(

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.simulation.drives.machine import Machine
 from hyperleg_design.simulation.drives.two_mass import LIGHTEST
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
 
 
 def machine_of(subject: Subject) -> Machine:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.base import BaseMotion
-    from hyperleg_design.gap.model.mechanism import Mechanism
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.base import BaseMotion
+from hyperleg_design.gap.model.mechanism import Mechanism
+from hyperleg_design.gap.model.subject import Subject
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,12 +6,11 @@ equations on the tree it read. What a reader of files left out or read wrongly s
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 STATES = 5
 """Random states that are compared."""

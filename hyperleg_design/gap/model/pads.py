@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from hyperleg_design.gap.model.frames import joint_frames, link_poses
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 
 def contact_torque(

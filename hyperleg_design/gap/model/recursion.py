@@ -11,15 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from hyperleg_design.gap.model.mechanism import BASE
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.mechanism import Mechanism
+from hyperleg_design.gap.model.mechanism import BASE, Mechanism
 
 SPIN, ANGULAR, LINEAR, PRODUCTS = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 15)
 """Rows of a frame's motion: angular velocity, angular acceleration, acceleration of the origin

@@ -4,14 +4,12 @@ own actuators.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.gap.model.mechanism import mass_properties
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 SENSOR = "position_"
 """Before the joint's name in that of its position sensor."""

@@ -12,16 +12,13 @@ not depend on posture here.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.newton_euler import base_start
 from hyperleg_design.gap.model.recursion import torques
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.base import BaseMotion
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 BLOCK = 4096
 """Ticks worked on together, so that they stay in the processor's cache."""

@@ -16,12 +16,11 @@ from hyperleg_design.errors import InputError, meant
 from hyperleg_design.gap.logs.metadata import STANDARD_GRAVITY, Metadata
 from hyperleg_design.gap.model.body_inertia import add_mass
 from hyperleg_design.gap.model.mechanism import Mechanism, mechanism_of, pinocchio_model
+from hyperleg_design.robot.parameters.described import RobotDesign
 
 if TYPE_CHECKING:
     import mujoco
     import pinocchio
-
-    from hyperleg_design.robot.parameters.described import RobotDesign
 
 
 @dataclass(frozen=True)

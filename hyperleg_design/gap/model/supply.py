@@ -11,15 +11,12 @@ are declared; D is mostly the motor's own (kt^2 / R), which no voltage changes. 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
 from hyperleg_design.simulation.drives.actuation import applied
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
 
 
 def over_nominal(subject: Subject, voltage: np.ndarray | None) -> np.ndarray:

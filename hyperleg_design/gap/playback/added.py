@@ -13,15 +13,14 @@ import numpy as np
 from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.evaluate import evaluate_many
 from hyperleg_design.evaluation.measures import measure_of
+from hyperleg_design.evaluation.protocol import Protocol
+from hyperleg_design.gap.playback.overlay import Overlay
 from hyperleg_design.gap.playback.replay import best_input, replay
 from hyperleg_design.gap.playback.windows import short_windows
+from hyperleg_design.gap.signals.signals import Signals
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from hyperleg_design.evaluation.protocol import Protocol
-    from hyperleg_design.gap.playback.overlay import Overlay
-    from hyperleg_design.gap.signals.signals import Signals
 
 COMPARED = (
     "fell",

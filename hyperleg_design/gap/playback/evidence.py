@@ -6,15 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.gap.signals.resting import moving_ticks, sticking
-from hyperleg_design.gap.signals.signals import OF_MOTORS
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import OF_MOTORS, Signals
 
 BAND = 8.0
 """Low-pass for the eye [Hz]; the diagnosis itself chooses a band of its own."""

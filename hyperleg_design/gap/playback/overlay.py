@@ -16,22 +16,20 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import yaml
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import effect
+from hyperleg_design.gap.effects.effect import Change
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.reading import read_json, read_yaml, short_name
+from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.robot.parameters.values import unknown
+from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.writing import write_text
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.effects.effect import Change
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.robot.parameters.described import RobotDesign
-    from hyperleg_design.simulation.alteration import Alteration
 
 SCHEMA = 1
 _KEYS = ("schema", "robot", "effects", "source")

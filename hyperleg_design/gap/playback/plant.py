@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.gap.model.machine import machine_of
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.model.supply import followed
 from hyperleg_design.simulation.alteration import Alteration, damps_motors
 from hyperleg_design.simulation.drives import actuation
 from hyperleg_design.simulation.drives.chain import Chain, Driven
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
 
 FASTEST = 1e5
 """Velocity from which a simulation has diverged [rad/s, m/s]."""

@@ -14,21 +14,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.effects.effect import Change
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.playback.base_states import base_states
 from hyperleg_design.gap.playback.plant import Plant
 from hyperleg_design.gap.playback.windows import Windows, short_windows
 from hyperleg_design.gap.signals.conditioning import wrong_limits
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.effects.effect import Change
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
 
 LONGEST_STEP = 0.00125
 """Of the simulation, where nobody gives one [s]: above it the controllers' discretisation shows

@@ -13,24 +13,22 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError, meant
 from hyperleg_design.gap.effects import EFFECTS, effect
+from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.playback.standard_run import TICK, simulated_log
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
-from hyperleg_design.gap.signals.signals import RESIDUALS
+from hyperleg_design.gap.signals.signals import RESIDUALS, Signals
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.effects.effect import Effect
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
 DURATION, STANDING = 12.0, 6.0
 """Of the chirp, and of the biped's motion [s]."""
 LOWEST, HIGHEST = 0.2, 6.0

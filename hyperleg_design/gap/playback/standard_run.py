@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.playback.plant import Plant
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.simulation.alteration import Alteration
+from hyperleg_design.simulation.alteration import Alteration
 
 TICK = 0.005
 """Of the shown logs [s]."""

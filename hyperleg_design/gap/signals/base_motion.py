@@ -6,18 +6,14 @@ All is smoothed without delay but the accelerometer, which needs no derivative.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.mechanism import quaternion_rotation
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.smoothing import Smooth, bridged, smooth
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
 
 LEVELLING = 0.5
 """Rate at which an orientation integrated from the gyro is drawn to what the accelerometer calls

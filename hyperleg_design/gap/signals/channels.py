@@ -4,13 +4,10 @@ keep what is unknown unknown.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
 
 GAP = 2.5
 """Ticks between two samples from which there is a gap."""

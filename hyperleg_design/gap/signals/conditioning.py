@@ -9,13 +9,13 @@ valid.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.frozen import frozen
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model import friction, pads, rigid
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.model.supply import over_nominal
 from hyperleg_design.gap.signals import contact, transmission
 from hyperleg_design.gap.signals.base_motion import base_motion
@@ -31,12 +31,7 @@ from hyperleg_design.gap.signals.ground import ground_residual
 from hyperleg_design.gap.signals.limit_cycle import limit_cycle
 from hyperleg_design.gap.signals.sensed import sensed_velocity
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.gap.signals.smoothing import smooth
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.smoothing import Smooth
+from hyperleg_design.gap.signals.smoothing import Smooth, smooth
 
 EDGE = 4.0
 """Radians of the slowest smoother's crossover that are left out beside gaps and at the ends of a

@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError, meant
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.pads import pad_points
+from hyperleg_design.gap.model.subject import Subject
 
 if TYPE_CHECKING:
     from collections.abc import Collection
-
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.base import BaseMotion
-    from hyperleg_design.gap.model.subject import Subject
 
 TOUCHING_FORCE = 2.0
 """Force from which a foot touches [N]; assumed, above the noise of foot sensors."""

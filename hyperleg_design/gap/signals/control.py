@@ -8,12 +8,9 @@ said.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 OTHERWISE = 0.1
 """Largest share of a command's variance that the declared form, with gains of any size, may leave

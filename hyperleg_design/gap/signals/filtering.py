@@ -15,14 +15,11 @@ from __future__ import annotations
 import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.signals.resting import moving
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 EDGES = (0.5, 1.5, 4.0, 10.0)
 """Between bands [Hz]; the last band ends at a row's cutoff."""

@@ -23,7 +23,6 @@ standing foot are a few per cent of its load off by it, those of one that lands 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -31,9 +30,7 @@ import numpy as np
 from hyperleg_design.gap.model import pads
 from hyperleg_design.gap.signals.contact import TOUCHING_FORCE
 from hyperleg_design.gap.signals.nominal_ground import Law, nominal_ground
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 SLIDING = 0.05
 """Speed from which a foot may slide [m/s] (assumed: above what noise of encoders makes)."""

@@ -11,14 +11,10 @@ damped.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.signals.smoothing import bridged
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.smoothing import Smooth
+from hyperleg_design.gap.signals.smoothing import Smooth, bridged
 
 PRESLIDING = 3e-4
 """Half the way over which friction turns over [rad]; assumed: bristles of gears bend by 0.1-1 mrad

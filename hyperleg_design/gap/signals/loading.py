@@ -5,20 +5,17 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.design_subject import of_design
 from hyperleg_design.gap.model.file_subject import of_file
 from hyperleg_design.gap.model.subject import Subject, index_of, motor_index
 from hyperleg_design.gap.signals.gearing import on_the_joints_side
 from hyperleg_design.robot.load import load_robot
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
 
 FULL = 95.0
 """Percentile of a battery's voltage that stands for its largest."""

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.model.subject import Subject
+
 if TYPE_CHECKING:
     import mujoco
-
-    from hyperleg_design.gap.model.subject import Subject
 
 
 @dataclass(frozen=True, eq=False)

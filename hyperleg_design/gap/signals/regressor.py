@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import threading
-from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hyperleg_design.gap.model.inertial_regressor import regressors
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 _REGRESSORS: WeakKeyDictionary[Signals, dict[str, np.ndarray]] = WeakKeyDictionary()
 _LOCK = threading.Lock()

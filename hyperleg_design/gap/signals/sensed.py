@@ -10,14 +10,9 @@ it is.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from hyperleg_design.gap.signals.smoothing import lateness
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.smoothing import Smooth
+from hyperleg_design.gap.signals.smoothing import Smooth, lateness
 
 WINDOW = 0.04
 """Time over which both velocities are averaged [s]."""

@@ -6,18 +6,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.base import BaseMotion
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.model.supply import over_nominal
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.limit_cycle import LimitCycle
-
+from hyperleg_design.gap.signals.limit_cycle import LimitCycle
 
 RESIDUALS = {
     "motion": ("joint", "Nm"),

@@ -15,16 +15,13 @@ itself tells the friction: such rest is in no residual, `holding` speaks of it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hyperleg_design.gap.model.friction import sliding_share
 from hyperleg_design.gap.signals.limit_cycle import PRESLIDING
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 NOISES = 8.0
 """Least z over the noise of the smoothed position."""

@@ -7,13 +7,10 @@ gives, play. Whatever else is wrong leaves it alone.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 
 FARTHEST = 1.6
 """Ratio of a motor's speed to that of its joints over the model's, or its inverse, from which it is

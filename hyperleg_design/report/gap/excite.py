@@ -11,14 +11,17 @@ import numpy as np
 
 from hyperleg_design.gap.effects import LOOK_ALIKES
 from hyperleg_design.gap.experiments import information as info
-from hyperleg_design.gap.experiments.designed_experiment import CLEAR, hidden, inseparable
+from hyperleg_design.gap.experiments.designed_experiment import (
+    CLEAR,
+    Experiment,
+    hidden,
+    inseparable,
+)
 from hyperleg_design.report.style import figure_style, save
 from hyperleg_design.writing import write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from hyperleg_design.gap.experiments.designed_experiment import Experiment
 
 MOST_DRAWN = 7
 """Joints drawn of a robot with more: one leg's."""

@@ -7,12 +7,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design import provenance
 from hyperleg_design.gap.playback.evidence import Evidence, evidence, rms
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.report.gap import figures as gap_figures
 from hyperleg_design.report.gap.drawing import robot_svg
 from hyperleg_design.report.gap.left import hints
@@ -32,9 +33,6 @@ from hyperleg_design.report.gap.text import change_text, sensitivity_rows
 from hyperleg_design.report.page import Details, Picture, Table, fill
 from hyperleg_design.report.style import save
 from hyperleg_design.writing import write_text
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
 
 FIGURES = "figures"
 MOST_RIVALS = 4

@@ -7,15 +7,13 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.playback.show import Shown
 from hyperleg_design.report.gap.text import chosen
 from hyperleg_design.report.style import figure_style, save
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.playback.show import Shown
 
 TRACE, RESIDUAL, BEFORE, TARGET = "#c8602a", "#9ca3af", "#2f6db3", "#6b7280"
 ZOOM = 2.0

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.logs.columns import unit
+from hyperleg_design.gap.logs.sampling import Column
 from hyperleg_design.gap.pipeline.beside_balances import APART
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.checks.check import Check
-    from hyperleg_design.gap.logs.sampling import Column
-    from hyperleg_design.gap.playback.added import Changed, Replayed
-    from hyperleg_design.gap.playback.measure import Gap
+from hyperleg_design.gap.playback.added import Changed, Replayed
+from hyperleg_design.gap.playback.measure import Gap
 
 NOISE_FROM = {
     "reference": "reference logs",

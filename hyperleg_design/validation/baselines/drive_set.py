@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,11 +15,9 @@ from hyperleg_design.gap.effects.drives.rotor_inertia import OF_JOINT, OF_ROTOR
 from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
 from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.gap.inference.nuisance import nuisance_parameters
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.playback.replay import best_input
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 KINDS = ("armature", "damping", "friction", "bias")
 """Of each joint [kg m^2, Nms/rad, Nm, rad], in the order of a vector of values; `delay` [s] comes

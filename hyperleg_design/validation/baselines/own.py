@@ -18,7 +18,6 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,13 +26,10 @@ from hyperleg_design.gap.effects.series import delayed
 from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.conditioning import limited_torque
-from hyperleg_design.validation.baselines.drive_set import KINDS, Fitted, check_logs
+from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.validation.baselines.drive_set import KINDS, DriveSet, Fitted, check_logs
 from hyperleg_design.validation.baselines.population import held_targets
 from hyperleg_design.validation.baselines.rollout import Rollout
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.validation.baselines.drive_set import DriveSet
 
 ROUNDS = 1
 """Of linearising without replays."""

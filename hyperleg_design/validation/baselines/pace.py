@@ -12,17 +12,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.validation.baselines.drive_set import Fitted, check_logs
+from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.validation.baselines.drive_set import DriveSet, Fitted, check_logs
 from hyperleg_design.validation.baselines.population import position_gap
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.validation.baselines.drive_set import DriveSet
 
 SIGMA = 0.5
 """First step, of parameters scaled to [-1, 1]."""

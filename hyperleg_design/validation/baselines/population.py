@@ -6,19 +6,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.gap.playback.plant import Plant
 from hyperleg_design.gap.playback.replay import LONGEST_STEP
 from hyperleg_design.gap.playback.windows import whole_log
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.validation.baselines.drive_set import DriveSet
+from hyperleg_design.validation.baselines.drive_set import DriveSet
 
 
 @dataclass(frozen=True, eq=False)

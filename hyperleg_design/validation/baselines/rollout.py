@@ -5,17 +5,14 @@ straight into the compiled model.
 from __future__ import annotations
 
 import copy
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.model.rig_spec import rig_spec
 from hyperleg_design.gap.playback.windows import whole_log
+from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.validation.baselines.drive_set import DriveSet
 from hyperleg_design.validation.baselines.population import held_targets
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.validation.baselines.drive_set import DriveSet
 
 STEP = 0.0025
 """Of the simulation at most [s], PACE's; implicit servos bear more than explicit ones."""

@@ -13,20 +13,17 @@ import contextlib
 import io
 import time
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.model.rig_spec import SENSOR, rig_spec
 from hyperleg_design.gap.playback.windows import whole_log
-from hyperleg_design.validation.baselines.drive_set import KINDS, Fitted, check_logs
+from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.validation.baselines.drive_set import KINDS, DriveSet, Fitted, check_logs
 from hyperleg_design.validation.baselines.population import held_targets
 from hyperleg_design.validation.baselines.rollout import STEP
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.validation.baselines.drive_set import DriveSet
 
 ITERATIONS = 60
 DELAY = "delay"

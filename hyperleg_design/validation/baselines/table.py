@@ -16,7 +16,7 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.gap.logs.log import read_log
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.validation.baselines.drive_set import DriveSet, Fitted, check_logs, drive_set
 from hyperleg_design.validation.baselines.own import fit_own
 from hyperleg_design.validation.baselines.pace import fit_pace
@@ -32,9 +33,6 @@ from hyperleg_design.validation.baselines.sysid import fit_sysid
 from hyperleg_design.validation.blind.score import SCORED, open_key
 from hyperleg_design.validation.blind.trial import CASES, DIAGNOSES, read_seal
 from hyperleg_design.writing import write_json, write_text
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
 
 METHODS = ("diagnosis", "own", "sysid", "pace")
 """`diagnosis` is what the trial's folder already holds; `own` fits the same parameters as the other

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.validation.blind.plan import Plan
 from hyperleg_design.validation.blind.wrong import SIZES, Wrong
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
 
 
 @dataclass(frozen=True, eq=False)

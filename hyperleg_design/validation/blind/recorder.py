@@ -5,14 +5,12 @@ signals, some of them absent.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.validation.blind.robots.chain import Chain
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
 
 TORQUES = ("motor_current", "motor_torque", "motor_torque_command", "none")
 """What a rig may know of its torques."""

@@ -6,14 +6,10 @@ Only sizes the cases of a trial; the diagnosis has its own, better ways.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.validation.blind.robots.chain import Chain
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
 
 CUTOFF = 12.0
 """Of the low-pass on both sides of the residual [Hz]."""

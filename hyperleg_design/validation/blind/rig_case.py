@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.validation.blind import excitation
 from hyperleg_design.validation.blind.case import Case
 from hyperleg_design.validation.blind.case import describe as describe
@@ -27,9 +27,6 @@ from hyperleg_design.validation.blind.residual import multiple, residual
 from hyperleg_design.validation.blind.robots.catalogue import chain
 from hyperleg_design.validation.blind.robots.chain import Chain
 from hyperleg_design.validation.blind.wrong import SIZES, Wrong
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
 
 PROBE = 5.0
 """Length of the runs that seek an effect's size [s]."""

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.validation.blind.plants.nuisance import Nuisance, built
 from hyperleg_design.validation.blind.plants.rig_build import build_rig, tilted
 from hyperleg_design.validation.blind.plants.stand import Stand
@@ -23,9 +24,6 @@ from hyperleg_design.validation.blind.robots.chain import GRAVITY, Chain, steine
 from hyperleg_design.validation.blind.robots.tree_links import matrix
 from hyperleg_design.validation.blind.walking_record import walking_log
 from hyperleg_design.validation.blind.wrong import Wrong
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
 
 BASE = "pelvis"
 """Body that carries the robot's payload and is pushed."""

@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.validation.blind.case import Case
 from hyperleg_design.validation.blind.drawing import draw
 from hyperleg_design.validation.blind.plan import Plan
@@ -21,9 +21,6 @@ from hyperleg_design.validation.blind.robots.chain import Chain
 from hyperleg_design.validation.blind.walker import BASE, Floor, Walker
 from hyperleg_design.validation.blind.walking_residual import shown
 from hyperleg_design.validation.blind.wrong import SIZES, WALKING_ONLY, Size, Wrong
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
 
 RECORDINGS = 2
 """Logs of a case."""

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.validation.blind.plants.walking import WalkingPlant, WalkingTrace, pad_names
 from hyperleg_design.validation.blind.recorder import Recorder, gains_of
 from hyperleg_design.validation.blind.robots.chain import Chain
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
 
 FORCE_NOISE = 0.6
 """Of a pad's load cell [N]."""

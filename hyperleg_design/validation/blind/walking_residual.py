@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.validation.blind.plants.walking import pad_names
 from hyperleg_design.validation.blind.residual import CUTOFF, EDGE, SLOW, SOFT, multiple
 from hyperleg_design.validation.blind.robots.chain import Chain
 from hyperleg_design.validation.blind.walking_record import ESTIMATE
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
 
 
 def shown(effect: str, with_effect: Sequence[Log], clean: Sequence[Log], robot: Chain) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -21,12 +21,10 @@ from hyperleg_design.gap.effects.placing import (
 )
 from hyperleg_design.gap.effects.series import lagged
 from hyperleg_design.gap.effects.usual import lateness
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
 
 BANDWIDTH = 10.0
 """Content of the command that tells a motor's bandwidth from delay [Hz]."""

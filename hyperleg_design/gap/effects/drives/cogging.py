@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -19,14 +19,12 @@ from hyperleg_design.gap.effects.placing import (
     motor_velocity,
 )
 from hyperleg_design.gap.effects.waves import fitted_waves, peaks
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.filtering import HIGHEST
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
 
 SHARE = 0.02
 """Usual cogging over the torque that a motor is made for (EMBiR: cogging of a few per cent of rated

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -25,12 +25,10 @@ from hyperleg_design.gap.effects.placing import (
 )
 from hyperleg_design.gap.effects.series import delayed
 from hyperleg_design.gap.effects.usual import lateness
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
 
 LATE = ("all that controllers ask for", "their targets alone")
 """Choices of the parameter `late`."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -21,13 +21,11 @@ from hyperleg_design.gap.effects.placing import (
     limited,
     motor_strength,
 )
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
 
 _QUANTILES = (0.97, 0.9, 0.8, 0.6)
 _NEEDED = 0.95

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -13,13 +13,11 @@ from hyperleg_design.gap.effects.families import FRICTION, INERTIAL
 from hyperleg_design.gap.effects.ground.ground_friction import ChangedGround, ground_trace
 from hyperleg_design.gap.effects.kinds import FootEffect
 from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals import nominal_ground
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.simulation.alteration import Alteration
+from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.simulation.alteration import Alteration
 
 USUAL = 0.5
 """Usual error of how the ground gives and damps, over it."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -13,13 +13,11 @@ from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.joints.friction import DescribedFriction, JointFriction
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.usual import least_friction
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import WIDTH, sliding
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.simulation.alteration import Alteration
+from hyperleg_design.simulation.alteration import Alteration
 
 SHARE = 0.04
 """Usual Coulomb friction over the torque that a joint is made for: 4-5 Nm on harmonic drives of 100

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -12,11 +12,9 @@ from typing_extensions import override
 from hyperleg_design.gap.effects.families import FRICTION as FRICTION
 from hyperleg_design.gap.effects.kinds import JointTorque
 from hyperleg_design.gap.effects.placing import joint_strength
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
 
 
 class DescribedFriction(JointTorque):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -14,14 +14,12 @@ from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.joints.friction import JointFriction
 from hyperleg_design.gap.effects.kinds import JointTorque
 from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.simulation.alteration import Alteration
+from hyperleg_design.simulation.alteration import Alteration
 
 USUAL = 0.006
 """Usual share that a model leaves out."""

@@ -14,17 +14,16 @@ from typing_extensions import override
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.body_inertia import add_inertia
 from hyperleg_design.gap.model.mechanism import BASE
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals import regressor
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
 
 if TYPE_CHECKING:
     import mujoco
-
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
 
 
 LARGEST_LOSS = 0.95

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -12,10 +12,8 @@ from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.links.inertial import OwnInertiaEffect, fitted
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.model.mechanism import inertial_parameters, mass_properties
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 
 OF_ARM, SHORTEST = 0.03, 0.03
 """Usual error over the distance of a link's centre of mass from its joint, at least of so many

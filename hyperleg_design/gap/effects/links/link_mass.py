@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.links.inertial import OwnInertiaEffect, least_mass
 from hyperleg_design.gap.effects.parameter import Parameter
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 SHARE = 0.1
 """Usual error over the link's own mass (assumed: cables, screws and glue that a drawing leaves

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -16,10 +16,8 @@ from hyperleg_design.gap.effects.links.inertial import (
 )
 from hyperleg_design.gap.effects.links.link_mass import DRAWN
 from hyperleg_design.gap.effects.parameter import Parameter
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 
 SHARE = 0.2
 """Usual payload over the mass that moves with the link (assumed: tools and batteries; a UR10e
