@@ -72,7 +72,7 @@ class Changed:
     trials: int
 
 
-def replayed(signals: Sequence[Signals], overlay: Overlay, *, threads: int = 1) -> list[Replayed]:
+def replayed(signals: Sequence[Signals], overlay: Overlay) -> list[Replayed]:
     """Replay logs without and with an overlay, over short windows that start from the logged
     states.
 
@@ -82,7 +82,6 @@ def replayed(signals: Sequence[Signals], overlay: Overlay, *, threads: int = 1) 
     Args:
         signals: conditioned logs of one robot; held-out ones, if the overlay came of logs.
         overlay: causes to add.
-        threads: of MuJoCo; the result does not depend on them.
 
     Returns:
         Errors of each joint without and with the overlay.
@@ -94,7 +93,7 @@ def replayed(signals: Sequence[Signals], overlay: Overlay, *, threads: int = 1) 
     ways = {follows: True}
     if follows == "target":
         ways = {"target, kept from row to row": True, "target, moving evenly between rows": False}
-    squares = {way: _squares(signals, overlay, keeps, threads) for way, keeps in ways.items()}
+    squares = {way: _squares(signals, overlay, keeps) for way, keeps in ways.items()}
     usable = np.isfinite(np.stack(list(squares.values()))).all((0, 1, 3))
     means = {way: values[:, usable].mean(1) for way, values in squares.items()}
     best = min(means, key=lambda way: float(means[way].sum(1).min()))
@@ -105,18 +104,16 @@ def replayed(signals: Sequence[Signals], overlay: Overlay, *, threads: int = 1) 
     ]
 
 
-def _squares(
-    signals: Sequence[Signals], overlay: Overlay, keeps_targets: bool, threads: int
-) -> np.ndarray:
+def _squares(signals: Sequence[Signals], overlay: Overlay, keeps_targets: bool) -> np.ndarray:
     """Mean square errors of position without and with an overlay, `(2, windows, joints)` [rad^2];
     NaN where a simulation diverged.
     """
     squares = []
     for one in signals:
         changes: Sequence[Any] = [(), overlay.alterations(one.subject)]
-        position, _ = replay(
-            one, changes, short_windows(one), keeps_targets=keeps_targets, threads=threads
-        ).errors(one)
+        position, _ = replay(one, changes, short_windows(one), keeps_targets=keeps_targets).errors(
+            one
+        )
         squares.append(
             np.nanmean(position**2, axis=2)
             if position.size

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.playback.sheets import root_mean_square
 from hyperleg_design.gap.signals.resting import moving_ticks, sticking
-from hyperleg_design.gap.signals.signals import OF_MOTORS, Signals
+from hyperleg_design.gap.signals.signals import OF_MOTORS, Signals, row_names
 
 BAND = 8.0
 """Low-pass for the eye [Hz]; the diagnosis itself chooses a band of its own."""
@@ -45,8 +46,10 @@ class Evidence:
         """Row of which causes explain most; where they explain nothing, the one with the largest
         residual.
         """
-        made = np.nan_to_num(rms(self.explained))
-        return int(np.argmax(made)) if made.any() else int(np.nanargmax(rms(self.before)))
+        made = np.nan_to_num(root_mean_square(self.explained))
+        return (
+            int(np.argmax(made)) if made.any() else int(np.nanargmax(root_mean_square(self.before)))
+        )
 
 
 def evidence(
@@ -81,46 +84,20 @@ def evidence(
         known = moving_ticks(signals, known, sticking(signals))
     before = _smooth(np.where(known, residual, 0.0), signals.step)
     made = _smooth(np.where(known, explained, 0.0), signals.step)
-    subject = signals.subject
     speed = np.full(residual.shape, np.nan)
-    rows: tuple[str, ...]
     if residual_name == "motion":
-        rows, speed = subject.joints, signals.velocity
+        speed = signals.velocity
     elif residual_name in OF_MOTORS:
-        rows, speed = subject.motors, signals.velocity @ subject.joint_from_motor
-    elif residual_name == "base":
-        rows = tuple(
-            f"base {part}"
-            for part in ("force x", "force y", "force z", "torque x", "torque y", "torque z")
-        )
-    else:
-        rows = tuple(f"{foot} {axis}" for foot in subject.feet for axis in "xyz")
+        speed = signals.velocity @ signals.subject.joint_from_motor
     empty = np.where(known, 0.0, np.nan)
     return Evidence(
         signals.log.name,
         residual_name,
-        tuple(rows),
+        row_names(signals.subject, residual_name),
         signals.time,
         before + empty,
         made + empty,
         speed,
-    )
-
-
-def rms(values: np.ndarray) -> np.ndarray:
-    """Compute the root of the mean square of each row, without unknown ticks.
-
-    Args:
-        values: `(t, r)`.
-
-    Returns:
-        `(r,)`; NaN where nothing is known.
-    """
-    known = np.isfinite(values)
-    count = known.sum(0)
-    total = np.where(known, values, 0.0) ** 2
-    return np.sqrt(
-        np.divide(total.sum(0), count, out=np.full(values.shape[1], np.nan), where=count > 0)
     )
 
 

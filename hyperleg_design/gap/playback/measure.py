@@ -124,7 +124,6 @@ def measure(
     reference: Sequence[Signals] = (),
     *,
     predict: bool = True,
-    threads: int = 1,
 ) -> Gap:
     """Measure the gap of logs, in every signal that they allow.
 
@@ -132,7 +131,6 @@ def measure(
         signals: conditioned logs of one robot.
         reference: conditioned logs of the same robot when all was well.
         predict: also gaps of position and velocity, from short replays.
-        threads: of MuJoCo.
 
     Returns:
         The rows of the gap, and where its noise floor comes from.
@@ -142,9 +140,9 @@ def measure(
     """
     if not signals:
         raise InputError("measure", "logs", None, "are missing: give at least one log")
-    sheets = [sheets_of(s, predict, threads) for s in signals]
+    sheets = [sheets_of(s, predict) for s in signals]
     floors, origin = repeatability_floors(
-        signals, sheets, [sheets_of(s, predict, threads) for s in reference]
+        signals, sheets, [sheets_of(s, predict) for s in reference]
     )
     rows: list[Row] = []
     for key in dict.fromkeys(k for each in sheets for k in each):

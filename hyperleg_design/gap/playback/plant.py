@@ -92,7 +92,6 @@ class Plant:
         alterations: Sequence[Alteration],
         count: int,
         step: float,
-        threads: int,
         unlimited: np.ndarray | None = None,
     ) -> None:
         from mujoco.batch import Batch
@@ -100,7 +99,7 @@ class Plant:
         self.subject = subject
         self.chain = Chain(machine_of(subject), (*followed(subject), *alterations), count, step)
         self.model = replay_model(subject, self.chain, alterations, step, unlimited)
-        self.batch = Batch(self.model, count, threads)
+        self.batch = Batch(self.model, count, 1)
         self.qpos, self.qvel, self._applied = (
             self.batch.bind(name) for name in ("qpos", "qvel", "qfrc_applied")
         )

@@ -18,8 +18,6 @@ def regimes_of(
     kind: str,
     names: tuple[str, ...],
     load: np.ndarray | None,
-    position: np.ndarray | None,
-    velocity: np.ndarray | None,
 ) -> dict[str, np.ndarray]:
     """Find what each joint, motor or foot does at each tick.
 
@@ -28,15 +26,18 @@ def regimes_of(
         kind: of place, `joint`, `motor` or another.
         names: of the places `(k,)`.
         load: torque that is believed to act `(t, k)` [Nm], if it counts.
-        position: `(t, k)` [rad], if there is one.
-        velocity: `(t, k)` [rad/s], if there is one.
 
     Returns:
         Whether each tick is in a regime `(t, k)`, by the regime's name.
     """
     shape = (len(signals.time), len(names))
     regimes: dict[str, np.ndarray] = {}
-    if velocity is not None:
+    position, velocity = signals.position, signals.velocity
+    if kind == "motor":
+        matrix = signals.subject.joint_from_motor
+        position, velocity = position @ matrix, velocity @ matrix
+    moves = kind in ("joint", "motor")
+    if moves:
         speed = np.abs(velocity)
         regimes["still"] = speed < STILL
         regimes["forward"], regimes["backward"] = velocity >= STILL, velocity <= -STILL
@@ -45,7 +46,7 @@ def regimes_of(
         regimes["reversal"] = _near_reversal(velocity, max(round(REVERSAL / signals.step / 2), 1))
     if load is not None:
         regimes["light load"], regimes["heavy load"] = _halves(np.abs(load))
-    if position is not None:
+    if moves:
         regimes["low posture"], regimes["high posture"] = _halves(position)
     if signals.voltage is not None and np.ptp(signals.voltage[np.isfinite(signals.voltage)]) > 0:
         low, high = _halves(signals.voltage[:, None])

@@ -94,7 +94,6 @@ def replay(
     follow: str = "",
     keeps_targets: bool = True,
     time_step: float | None = None,
-    threads: int = 1,
 ) -> Replay:
     """Predict windows of a log, once with each change.
 
@@ -108,7 +107,6 @@ def replay(
             at the rate of the log; otherwise targets move evenly from row to row, as those of a
             controller that is faster than the log.
         time_step: of the simulation, as a rule a fraction of a tick [s].
-        threads: of MuJoCo; the result does not depend on it.
 
     Returns:
         Predicted positions and velocities of each change and window.
@@ -129,7 +127,6 @@ def replay(
             inputs,
             keeps_targets and follow == "target",
             substeps,
-            threads,
         )
         for change in changes
     ]
@@ -174,7 +171,6 @@ def _run(
     inputs: np.ndarray,
     kept: bool,
     substeps: int,
-    threads: int,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     subject, ticks = signals.subject, windows.ticks
     count, length = ticks.shape
@@ -183,7 +179,6 @@ def _run(
         alterations,
         count,
         signals.step / substeps,
-        threads,
         wrong_limits(subject, signals.position),
     )
     first, half = windows.start, signals.step / substeps / 2

@@ -12,7 +12,7 @@ from hyperleg_design.gap.playback.regimes import regimes_of
 from hyperleg_design.gap.playback.replay import best_input, replay
 from hyperleg_design.gap.playback.windows import short_windows
 from hyperleg_design.gap.signals.channels import applied
-from hyperleg_design.gap.signals.signals import RESIDUALS, Signals
+from hyperleg_design.gap.signals.signals import RESIDUALS, Signals, row_names
 
 BAND = 10.0
 """[Hz] Up to which torque residuals count (assumed; joints of legs and arms move below it)."""
@@ -48,89 +48,41 @@ class Sheet:
     """Residual within frequency bands `(t, k)`."""
 
 
-def sheets_of(signals: Signals, predict: bool, threads: int) -> dict[tuple[str, str], Sheet]:
+def sheets_of(signals: Signals, predict: bool) -> dict[tuple[str, str], Sheet]:
     """Collect the residuals of one log, one sheet a signal and kind of place.
 
     Args:
         signals: the conditioned log.
         predict: whether short replays give sheets of position and velocity too.
-        threads: of MuJoCo.
 
     Returns:
         The sheets by signal and kind of place.
     """
     subject = signals.subject
+    loads = {
+        "motion": applied(subject.joint_from_motor, signals.believed),
+        "drive": signals.measured,
+        "control": signals.command,
+        "transmission": signals.velocity @ subject.joint_from_motor,
+    }
     made: list[Sheet] = []
-    valid = signals.valid[:, None]
     for residual_name, (signal, kind, unit) in TORQUE_SIGNALS.items():
         if residual_name not in signals.residual:
             continue
-        residual = np.where(valid, signals.residual[residual_name], np.nan)
-        if residual_name == "motion":
-            believed = applied(subject.joint_from_motor, signals.believed)
+        residual = np.where(signals.valid[:, None], signals.residual[residual_name], np.nan)
+        names = row_names(subject, residual_name)
+        made.append(_sheet(signals, signal, kind, unit, names, residual, loads.get(residual_name)))
+        if residual_name == "motion" and not subject.one_to_one:
+            at_motors = applied(subject.motor_from_joint, residual)
             made.append(
-                _sheet(
-                    signals,
-                    signal,
-                    "joint",
-                    unit,
-                    subject.joints,
-                    residual,
-                    believed,
-                    signals.position,
-                    signals.velocity,
-                )
+                _sheet(signals, signal, "motor", unit, subject.motors, at_motors, signals.believed)
             )
-            if not subject.one_to_one:
-                at_motors = applied(subject.motor_from_joint, residual)
-                made.append(_motor_sheet(signals, signal, unit, at_motors, signals.believed))
-        elif residual_name == "drive":
-            assert signals.measured is not None
-            made.append(_motor_sheet(signals, signal, unit, residual, signals.measured))
-        elif residual_name == "control":
-            assert signals.command is not None
-            made.append(_motor_sheet(signals, signal, unit, residual, signals.command))
-        elif residual_name == "transmission":
-            made.append(
-                _motor_sheet(
-                    signals, signal, unit, residual, signals.velocity @ subject.joint_from_motor
-                )
-            )
-        else:
-            names: tuple[str, ...] = (
-                "force_x",
-                "force_y",
-                "force_z",
-                "moment_x",
-                "moment_y",
-                "moment_z",
-            )
-            if residual_name == "ground":
-                names = tuple(f"{foot}_{axis}" for foot in subject.feet for axis in "xyz")
-            made.append(_sheet(signals, signal, kind, unit, names, residual, None, None, None))
     if predict and signals.valid.any():
-        made += _predictions(signals, threads)
+        made += _predictions(signals)
     return {(s.signal, s.kind): s for s in made}
 
 
-def _motor_sheet(
-    signals: Signals, signal: str, unit: str, residual: np.ndarray, size: np.ndarray
-) -> Sheet:
-    matrix = signals.subject.joint_from_motor
-    return _sheet(
-        signals,
-        signal,
-        "motor",
-        unit,
-        signals.subject.motors,
-        residual,
-        size,
-        signals.position @ matrix,
-        signals.velocity @ matrix,
-    )
-
-
-def _predictions(signals: Signals, threads: int) -> list[Sheet]:
+def _predictions(signals: Signals) -> list[Sheet]:
     """Errors of short predictions, put back on the ticks that they belong to."""
     subject = signals.subject
     try:
@@ -140,49 +92,21 @@ def _predictions(signals: Signals, threads: int) -> list[Sheet]:
     follow = best_input(signals)
     if follow == "torque" and not np.isfinite(signals.believed[signals.valid]).all():
         return []
-    predictions = replay(signals, windows=windows, follow=follow, threads=threads).errors(signals)
+    predictions = replay(signals, windows=windows, follow=follow).errors(signals)
     made, ticks = [], windows.ticks[:, :-1]
-    for signal, unit, errors in (
-        ("position", "rad", predictions[0][0]),
-        ("velocity", "rad/s", predictions[1][0]),
+    for signal, unit, errors, own in (
+        ("position", "rad", predictions[0][0], signals.position),
+        ("velocity", "rad/s", predictions[1][0], signals.velocity),
     ):
-        values = np.full(signals.position.shape, np.nan)
+        values = np.full(own.shape, np.nan)
         values[ticks] = errors[:, :-1]
-        values[~np.isfinite(signals.residual["motion"])] = (
-            np.nan
-        )  # what an unknown ground pushes is no gap
-        own = signals.position if signal == "position" else signals.velocity
-        made.append(
-            _sheet(
-                signals,
-                signal,
-                "joint",
-                unit,
-                subject.joints,
-                values,
-                own,
-                signals.position,
-                signals.velocity,
-                banded=False,
-            )
-        )
+        # what an unknown ground pushes is no gap
+        values[~np.isfinite(signals.residual["motion"])] = np.nan
+        made.append(_sheet(signals, signal, "joint", unit, subject.joints, values, own))
         if not subject.one_to_one:
             matrix = np.asarray(subject.joint_from_motor)
-            at_motors, position = applied(matrix.T, values), signals.position @ matrix
-            made.append(
-                _sheet(
-                    signals,
-                    signal,
-                    "motor",
-                    unit,
-                    subject.motors,
-                    at_motors,
-                    own @ matrix,
-                    position,
-                    signals.velocity @ matrix,
-                    banded=False,
-                )
-            )
+            values, own = applied(matrix.T, values), own @ matrix
+            made.append(_sheet(signals, signal, "motor", unit, subject.motors, values, own))
     return made
 
 
@@ -193,44 +117,27 @@ def _sheet(
     unit: str,
     names: tuple[str, ...],
     residual: np.ndarray,
-    load: np.ndarray | None,
-    position: np.ndarray | None,
-    velocity: np.ndarray | None,
-    banded: bool = True,
+    own: np.ndarray | None,
 ) -> Sheet:
-    regimes = regimes_of(
-        signals,
-        kind,
-        names,
-        load if signal not in ("position", "velocity") else None,
-        position,
-        velocity,
-    )
+    """Sheet of a residual; `own` is the signal itself, whose size tells what the residual means."""
+    predicted = signal in ("position", "velocity")
+    regimes = regimes_of(signals, kind, names, None if predicted else own)
     size = (
         np.full(len(names), np.nan)
-        if load is None
-        else root_mean_square(np.where(signals.valid[:, None], load, np.nan))
+        if own is None
+        else root_mean_square(np.where(signals.valid[:, None], own, np.nan))
     )
-    if not banded:
-        return Sheet(
-            signal,
-            kind,
-            unit,
-            names,
-            residual,
-            _smoothing_error(signals, signal, kind),
-            size,
-            regimes,
-            {},
-        )
+    if predicted:
+        floor = _smoothing_error(signals, signal, kind)
+        return Sheet(signal, kind, unit, names, residual, floor, size, regimes, {})
     spectrum, frequency, weight = _spectrum(residual, signals.step)
-    kept = _band(spectrum, frequency, weight, 0.0, BAND, residual)
+    kept = _band(spectrum, frequency, 0.0, BAND, residual)
     high = frequency > BAND
     with np.errstate(invalid="ignore", divide="ignore"):
         density = np.mean(np.abs(spectrum[high]) ** 2, 0) if high.any() else np.zeros(len(names))
         floor = np.sqrt(density * 2 * np.sum(frequency <= BAND)) / len(residual) / weight
     bands = {
-        f"{low:g}-{top:g} Hz": _band(spectrum, frequency, weight, low, top, residual)
+        f"{low:g}-{top:g} Hz": _band(spectrum, frequency, low, top, residual)
         for low, top in BANDS
         if low < 0.5 / signals.step
     }
@@ -267,7 +174,6 @@ def _spectrum(residual: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray
 def _band(
     spectrum: np.ndarray,
     frequency: np.ndarray,
-    weight: np.ndarray,
     low: float,
     top: float,
     residual: np.ndarray,

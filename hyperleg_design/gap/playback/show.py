@@ -27,7 +27,7 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.playback.standard_run import TICK, simulated_log
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
-from hyperleg_design.gap.signals.signals import RESIDUALS, Signals
+from hyperleg_design.gap.signals.signals import RESIDUALS, Signals, row_names
 
 DURATION, STANDING = 12.0, 6.0
 """Of the chirp, and of the biped's motion [s]."""
@@ -272,15 +272,6 @@ def _largest(
     """The first of the residuals in which there is a trace, its row with the largest, its unit,
     that trace, and the residual.
     """
-    subject = signals.subject
-    wrench = ("force x", "force y", "force z", "moment x", "moment y", "moment z")
-    names = {
-        "motion": subject.joints,
-        "drive": subject.motors,
-        "transmission": subject.motors,
-        "base": wrench,
-    }
-    names["ground"] = tuple(f"{foot} {axis}" for foot in subject.feet for axis in "xyz")
     for residual_name in ("motion", "drive", "ground", "base", "transmission"):
         if residual_name not in traces:
             continue
@@ -298,6 +289,12 @@ def _largest(
             residual = np.where(
                 np.isfinite(rows[:, place]), signals.residual[residual_name][:, place], np.nan
             )
-            return residual_name, names[residual_name][place], unit, rows[:, place], residual
+            return (
+                residual_name,
+                row_names(signals.subject, residual_name)[place],
+                unit,
+                rows[:, place],
+                residual,
+            )
     unknown = np.full(len(signals.time), np.nan)
     return "", "", "Nm", unknown, unknown

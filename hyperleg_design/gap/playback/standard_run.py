@@ -45,7 +45,7 @@ def simulated_log(
     """
     import mujoco
 
-    plant = Plant(subject, alterations, 1, TICK / SUBSTEPS, 1)
+    plant = Plant(subject, alterations, 1, TICK / SUBSTEPS)
     pose = np.array(plant.model.qpos0[None, :7]) if subject.floating else None
     if pose is not None:
         pose[0, 2] += _lift(plant.model, subject, target[0])

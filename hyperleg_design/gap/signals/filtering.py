@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.gap.signals.resting import moving
-from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals, row_names
 
 EDGES = (0.5, 1.5, 4.0, 10.0)
 """Between bands [Hz]; the last band ends at a row's cutoff."""
@@ -182,7 +182,7 @@ def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> Filtere
                 Row(
                     residual_name,
                     column,
-                    row_name(signals, residual_name, column),
+                    row_names(signals.subject, residual_name)[column],
                     _cutoff(signals, residual_name, column),
                 )
             )
@@ -194,27 +194,6 @@ def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> Filtere
     return FilteredLog(
         signals, tuple(rows), np.array(masks).reshape(len(rows), len(signals.time)), bands, length
     )
-
-
-def row_name(signals: Signals, residual_name: str, column: int) -> str:
-    """Name a row of a residual: a joint, a motor, a foot and axis, or an axis of the base.
-
-    Args:
-        signals: conditioned log.
-        residual_name: such as `motion`.
-        column: index of the row.
-
-    Returns:
-        The name.
-    """
-    subject = signals.subject
-    if residual_name == "motion":
-        return subject.joints[column]
-    if residual_name == "base":
-        return ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")[column]
-    if residual_name == "ground":
-        return f"{subject.feet[column // 3]}_{'xyz'[column % 3]}"
-    return subject.motors[column]
 
 
 def _cutoff(signals: Signals, residual_name: str, column: int) -> float:

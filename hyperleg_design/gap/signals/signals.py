@@ -28,6 +28,23 @@ OF_MOTORS = tuple(
     residual_name for residual_name, (kind, _) in RESIDUALS.items() if kind == "motor"
 )
 """Residuals with a row for each motor."""
+WRENCH = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
+"""Rows of the residual of the base."""
+
+
+def row_names(subject: Subject, residual_name: str) -> tuple[str, ...]:
+    """Name the rows of a residual.
+
+    Args:
+        subject: the robot.
+        residual_name: of `RESIDUALS`.
+
+    Returns:
+        Joints, motors, parts of the base's wrench, or each foot with each axis.
+    """
+    feet = tuple(f"{foot}_{axis}" for foot in subject.feet for axis in "xyz")
+    kind, _ = RESIDUALS[residual_name]
+    return {"joint": subject.joints, "motor": subject.motors, "robot": WRENCH, "foot": feet}[kind]
 
 
 @dataclass(frozen=True, eq=False)

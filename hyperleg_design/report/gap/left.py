@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.gap.playback.evidence import Evidence, rms
+from hyperleg_design.gap.playback.evidence import Evidence
+from hyperleg_design.gap.playback.sheets import root_mean_square
 
 TURN = 0.05
 """Speed over which friction turns its direction in this fit [rad/s]."""
@@ -110,7 +111,7 @@ def _everywhere(shown: Sequence[Evidence], fits: Sequence[Friction], enough: flo
     """A sentence on friction of all joints, where it explains enough of what is left of them."""
     if not shown:
         return ""
-    squares = np.nan_to_num(rms(np.concatenate([one.after for one in shown]))) ** 2
+    squares = np.nan_to_num(root_mean_square(np.concatenate([one.after for one in shown]))) ** 2
     share = float(squares @ [fit.share for fit in fits]) / max(float(squares.sum()), 1e-300)
     if share < enough:
         return ""

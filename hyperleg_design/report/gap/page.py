@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design import provenance
-from hyperleg_design.gap.playback.evidence import Evidence, evidence, rms
+from hyperleg_design.gap.playback.evidence import Evidence, evidence
+from hyperleg_design.gap.playback.sheets import root_mean_square
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.report.gap import figures as gap_figures
 from hyperleg_design.report.gap.drawing import robot_svg
@@ -195,7 +196,8 @@ def _brief(rival: Mapping[str, Any]) -> CauseRow:
 def _traces(folder: Path, shown: Sequence[Evidence], explained: bool) -> list[list[Picture]]:
     """Two pictures a log, over time and over speed; logs where causes show most come first."""
     telling = sorted(
-        shown, key=lambda part: -float(np.nan_to_num(rms(part.explained)).max(initial=0.0))
+        shown,
+        key=lambda part: -float(np.nan_to_num(root_mean_square(part.explained)).max(initial=0.0)),
     )
     figures = []
     what = "what the causes predict and what is left" if explained else "no cause is named"
@@ -239,7 +241,8 @@ def _rows(shown: Sequence[Evidence], explained: bool) -> Details | None:
         return None
     alike = [one for one in shown if one.residual_name == shown[0].residual_name]
     before, after = (
-        rms(np.concatenate(part)) for part in ([s.before for s in alike], [s.after for s in alike])
+        root_mean_square(np.concatenate(part))
+        for part in ([s.before for s in alike], [s.after for s in alike])
     )
     unit = gap_figures.AXIS.get(shown[0].residual_name, gap_figures.TORQUE)
     header = ["", f"before, {unit}", *([f"after, {unit}"] if explained else [])]

@@ -35,7 +35,6 @@ def fit_pace(
     population: int | None = None,
     generations: int = GENERATIONS,
     seconds: float = np.inf,
-    threads: int = 1,
 ) -> Fitted:
     """Fit PACE's parameters to logs.
 
@@ -47,7 +46,6 @@ def fit_pace(
             parameters, whichever is more.
         generations: at most.
         seconds: budget; a generation that has begun is finished.
-        threads: of MuJoCo.
 
     Raises:
         InputError: logs that cannot be replayed, or `cma` is not installed.
@@ -79,7 +77,7 @@ def fit_pace(
     evaluations, stopped = 0, f"{generations} generations"
     while not search.stop():
         asked = np.array(search.ask())
-        scores = position_gap(signals, drives, values_of(asked), threads=threads) ** 2
+        scores = position_gap(signals, drives, values_of(asked)) ** 2
         scores = np.where(np.isfinite(scores), scores, 1e6)
         search.tell(list(asked), scores.tolist())
         evaluations += size

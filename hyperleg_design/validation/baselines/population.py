@@ -53,7 +53,6 @@ def predicted(
     values: np.ndarray,
     *,
     time_step: float = LONGEST_STEP,
-    threads: int = 1,
 ) -> np.ndarray:
     """Joint positions as encoders tell them over the whole log, first to last valid tick.
 
@@ -62,7 +61,6 @@ def predicted(
         drives: parameters of the robot.
         values: `(k, P)`.
         time_step: longest of the simulation [s].
-        threads: of MuJoCo.
 
     Returns:
         `(k, T, n)` [rad]; NaN after a simulation diverged.
@@ -81,7 +79,7 @@ def predicted(
     alteration = Drives(
         friction, drives.part(values, "damping"), drives.part(values, "bias"), width
     )
-    plant = Plant(subject, (alteration,), len(values), step, threads)
+    plant = Plant(subject, (alteration,), len(values), step)
     joints = len(subject.joints)
     plant.batch.expand("dof_armature")[:, plant.model.nv - joints :] += drives.part(
         values, "armature"

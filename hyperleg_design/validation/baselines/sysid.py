@@ -42,7 +42,6 @@ def fit_sysid(
     *,
     iterations: int = ITERATIONS,
     seconds: float = np.inf,
-    threads: int = 1,
 ) -> Fitted:
     """Fit the parameters by `mujoco.sysid.optimize`.
 
@@ -51,7 +50,6 @@ def fit_sysid(
         drives: parameters of the robot.
         iterations: at most.
         seconds: budget.
-        threads: of MuJoCo's rollouts.
 
     Raises:
         InputError: logs that cannot be replayed, or `mujoco.sysid` is not installed.
@@ -115,7 +113,7 @@ def fit_sysid(
         models_sequences=sequences,
         modify_residual=custom_residual,
         custom_rollout=custom_rollout,
-        n_threads=threads,
+        n_threads=1,
     )
 
     def residual(x: np.ndarray, given: Any, **options: Any) -> Any:

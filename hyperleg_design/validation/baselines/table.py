@@ -157,7 +157,6 @@ def baselines_table(
     cases: Sequence[str] = (),
     budget: float = BUDGET,
     seed: int = 0,
-    threads: int = 1,
     progress: bool = False,
 ) -> Table:
     """Run the methods on the cases of a trial, and write `baselines.json` and `baselines.md`.
@@ -171,7 +170,6 @@ def baselines_table(
         cases: their names, such as 003; all by default.
         budget: of each fit [s].
         seed: of CMA-ES.
-        threads: of MuJoCo.
         progress: show a bar.
 
     Raises:
@@ -194,7 +192,7 @@ def baselines_table(
     entries: list[Entry] = []
     for name in tqdm(list(cases) or known, desc="baselines", disable=not progress):
         entries += case_entries(
-            folder, name, methods, budget=budget, seed=seed, threads=threads, truth=truths.get(name)
+            folder, name, methods, budget=budget, seed=seed, truth=truths.get(name)
         )
     told = tuple((name, _told(truths[name])) for name in (list(cases) or known) if name in truths)
     table = Table(tuple(entries), budget, told)
@@ -214,7 +212,6 @@ def case_entries(
     *,
     budget: float,
     seed: int = 0,
-    threads: int = 1,
     truth: dict[str, Any] | None = None,
 ) -> list[Entry]:
     """All methods on one case.
@@ -225,7 +222,6 @@ def case_entries(
         methods: their names.
         budget: time that each method has [s].
         seed: of their randomness.
-        threads: of the simulations.
         truth: what is wrong, if the key is open.
 
     Returns:
@@ -238,21 +234,19 @@ def case_entries(
     try:
         train, held, healthy, drives = open_case(folder / CASES / name)
         nothing = np.zeros(drives.count)
-        before = float(position_gap(held, drives, nothing, threads=threads)[0])
-        floor = (
-            float(position_gap(healthy, drives, nothing, threads=threads)[0]) if healthy else 0.0
-        )
+        before = float(position_gap(held, drives, nothing)[0])
+        floor = float(position_gap(healthy, drives, nothing)[0]) if healthy else 0.0
     except HyperlegError as error:
         return entries + [
             Entry(name, m, "", "", None, None, None, None, None, str(error)) for m in fixed
         ]
     for method in fixed:
         try:
-            found = _fit(method)(train, drives, budget, seed, threads)
+            found = _fit(method)(train, drives, budget, seed)
         except HyperlegError as error:
             entries.append(Entry(name, method, "", "", before, None, floor, None, None, str(error)))
             continue
-        after = float(position_gap(held, drives, found.values, threads=threads)[0])
+        after = float(position_gap(held, drives, found.values)[0])
         effect, location, size = drives.cause(found.values)
         if size < NAMED:
             effect = location = ""
@@ -276,14 +270,12 @@ def case_entries(
     return entries
 
 
-def _fit(method: str) -> Callable[[Sequence[Signals], DriveSet, float, int, int], Fitted]:
+def _fit(method: str) -> Callable[[Sequence[Signals], DriveSet, float, int], Fitted]:
     return {
-        "own": lambda train, drives, budget, seed, threads: fit_own(train, drives),
-        "sysid": lambda train, drives, budget, seed, threads: fit_sysid(
-            train, drives, seconds=budget, threads=threads
-        ),
-        "pace": lambda train, drives, budget, seed, threads: fit_pace(
-            train, drives, seed=seed, seconds=budget, threads=threads
+        "own": lambda train, drives, budget, seed: fit_own(train, drives),
+        "sysid": lambda train, drives, budget, seed: fit_sysid(train, drives, seconds=budget),
+        "pace": lambda train, drives, budget, seed: fit_pace(
+            train, drives, seed=seed, seconds=budget
         ),
     }[method]
 

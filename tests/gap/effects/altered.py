@@ -33,7 +33,7 @@ def altered(
         temperature: from time to [degC], of all motors.
         battery: from time to [V].
     """
-    plant = Plant(subject, alterations, 1, TICK / SUBSTEPS, 1)
+    plant = Plant(subject, alterations, 1, TICK / SUBSTEPS)
     plant.start(
         np.asarray(target(0.0), float)[None], np.zeros((1, len(subject.joints))), None, None
     )

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from robots import PENDULUM, servo_run, waves
 
-from hyperleg_design.gap.playback.evidence import Evidence, evidence, rms
+from hyperleg_design.gap.playback.evidence import Evidence, evidence
+from hyperleg_design.gap.playback.sheets import root_mean_square
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.gap.signals.signals import Signals
@@ -40,20 +41,13 @@ def test_the_true_cause_explains_and_another_does_not(signals: Signals) -> None:
             }
         ],
     )
-    before = rms(nothing.before)[0]
+    before = root_mean_square(nothing.before)[0]
     assert before > 0.02
-    assert rms(right.after)[0] < 0.02 * before
-    assert rms(wrong.after)[0] > 0.9 * before
+    assert root_mean_square(right.after)[0] < 0.02 * before
+    assert root_mean_square(wrong.after)[0] > 0.9 * before
     np.testing.assert_array_equal(nothing.after, nothing.before)
     assert right.rows == ("swing",)
     assert right.worst == 0
-
-
-def test_unknown_ticks_are_left_out() -> None:
-    values = np.array([[3.0, np.nan], [np.nan, np.nan], [4.0, np.nan]])
-    found = rms(values)
-    assert found[0] == pytest.approx(np.sqrt(12.5))
-    assert np.isnan(found[1])
 
 
 def test_the_row_that_is_drawn_is_the_one_that_causes_explain():

@@ -23,7 +23,7 @@ def pendulum(robot_files):
 
 def swung(subject, position, torque, ticks, step=STEP, velocity=None):
     """Positions and velocities of windows `(ticks + 1, w)` under torques from time."""
-    plant = Plant(subject, (), len(position), step, 1)
+    plant = Plant(subject, (), len(position), step)
     start = np.zeros(len(position)) if velocity is None else np.array(velocity)
     plant.start(np.array(position)[:, None], start[:, None], None, None)
     rows = [tuple(x[:, 0].copy() for x in plant.measured())]
@@ -89,7 +89,7 @@ def test_windows_do_not_know_of_each_other(pendulum):
 
 
 def test_a_window_that_diverges_is_lost_alone(pendulum):
-    plant = Plant(pendulum, (), 3, 0.005, 1)
+    plant = Plant(pendulum, (), 3, 0.005)
     plant.start(np.zeros((3, 1)), np.zeros((3, 1)), None, None)
     for _ in range(20):
         plant.step("torque", np.array([[0.01], [1e9], [0.01]]), None, None)
@@ -106,7 +106,7 @@ def test_joints_stop_at_their_ends_unless_they_are_told_not_to(robot_files, tmp_
     subject = load_subject(path)
     ends = []
     for unlimited in (None, np.array([True])):
-        plant = Plant(subject, (), 1, STEP, 1, unlimited)
+        plant = Plant(subject, (), 1, STEP, unlimited)
         plant.start(np.zeros((1, 1)), np.zeros((1, 1)), None, None)
         for _ in range(600):
             plant.step("torque", np.full((1, 1), 0.45), None, None)

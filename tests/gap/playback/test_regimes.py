@@ -11,8 +11,16 @@ from hyperleg_design.gap.playback.regimes import REVERSAL, STILL, regimes_of
 STEP = 0.005
 
 
-def signals(time, **changes):
-    return SimpleNamespace(time=time, step=STEP, voltage=None, touching=None, **changes)
+def signals(time, position, velocity):
+    return SimpleNamespace(
+        time=time,
+        step=STEP,
+        voltage=None,
+        touching=None,
+        position=position,
+        velocity=velocity,
+        subject=SimpleNamespace(joint_from_motor=np.array([[2.0]])),
+    )
 
 
 def wave():
@@ -22,7 +30,7 @@ def wave():
 
 def test_each_tick_stands_still_or_moves_one_way():
     time, position, velocity = wave()
-    regimes = regimes_of(signals(time), "joint", ("j",), None, position, velocity)
+    regimes = regimes_of(signals(time, position, velocity), "joint", ("j",), None)
     count = sum(regimes[name].astype(int) for name in ("still", "forward", "backward"))
     assert np.all(count == 1)
     assert np.all(np.abs(velocity[regimes["still"]]) < STILL)
@@ -33,7 +41,7 @@ def test_each_tick_stands_still_or_moves_one_way():
 
 def test_reversals_are_around_the_changes_of_direction():
     time, position, velocity = wave()
-    found = regimes_of(signals(time), "joint", ("j",), None, position, velocity)["reversal"]
+    found = regimes_of(signals(time, position, velocity), "joint", ("j",), None)["reversal"]
     distance = np.abs(time[:, None] - np.array([0.5, 1.5, 2.5, 3.5])).min(1)
     assert np.all(found[distance < REVERSAL / 2 - 2 * STEP, 0])
     assert not np.any(found[distance > REVERSAL / 2 + 2 * STEP, 0])
@@ -42,19 +50,26 @@ def test_reversals_are_around_the_changes_of_direction():
 def test_loads_and_postures_are_split_in_halves_column_by_column():
     time, position, _ = wave()
     both = np.concatenate([position, 10 + position], 1)
-    regimes = regimes_of(signals(time), "joint", ("a", "b"), both, both, None)
-    assert "forward" not in regimes
+    regimes = regimes_of(signals(time, both, 0 * both), "joint", ("a", "b"), both)
     for name in ("light load", "low posture"):
         np.testing.assert_allclose(regimes[name].mean(0), 0.5, atol=0.01)
 
 
 def test_a_battery_counts_only_where_it_changes():
     time, position, velocity = wave()
-    known = signals(time)
+    known = signals(time, position, velocity)
     known.voltage = np.full(len(time), 24.0)
-    assert "low voltage" not in regimes_of(known, "joint", ("j",), None, position, velocity)
+    assert "low voltage" not in regimes_of(known, "joint", ("j",), None)
     known.voltage = np.linspace(24, 20, len(time))
-    found = regimes_of(known, "joint", ("j",), None, position, velocity)
+    found = regimes_of(known, "joint", ("j",), None)
     assert found["low voltage"].shape == (len(time), 1)
     assert found["low voltage"][-1, 0]
     assert found["high voltage"][0, 0]
+
+
+def test_a_motor_turns_as_its_joint_and_a_foot_neither_turns_nor_reverses():
+    time, position, velocity = wave()
+    made = signals(time, position, velocity)
+    forward = regimes_of(made, "motor", ("m",), None)["forward"]
+    np.testing.assert_array_equal(forward, 2 * velocity >= STILL)
+    assert not regimes_of(made, "foot", ("f",), None)

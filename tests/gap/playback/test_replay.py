@@ -30,11 +30,6 @@ def test_torque_replays_reproduce_the_simulation(signals, name, worst):
     np.testing.assert_allclose(found.torque[0, :, 0], one.believed[found.windows.start], atol=1e-9)
 
 
-def test_the_result_does_not_depend_on_threads(signals):
-    one = signals["coupled"]
-    np.testing.assert_array_equal(replay(one, threads=1).position, replay(one, threads=2).position)
-
-
 def test_finer_steps_come_nearer(signals):
     one = signals["pendulum"]
     coarse, fine = (

@@ -31,7 +31,7 @@ def signals(robot_files, runs):
 def torque_sheet(signals, residual):
     """Sheet of the torque whose residual is `(t,)`."""
     changed = replace(signals, residual={"motion": residual[:, None]}, valid=np.isfinite(residual))
-    return sheets_of(changed, False, 1)["torque", "joint"]
+    return sheets_of(changed, False)["torque", "joint"]
 
 
 def name(low, top):
@@ -101,7 +101,7 @@ def test_regimes_are_parts_of_the_residual(signals):
 
 
 def test_predictions_of_a_robot_without_a_gap_leave_little(signals):
-    found = sheets_of(signals, True, 1)
+    found = sheets_of(signals, True)
     assert {("torque", "joint"), ("position", "joint"), ("velocity", "joint")} <= set(found)
     for quantity in ("position", "velocity"):
         sheet = found[quantity, "joint"]
