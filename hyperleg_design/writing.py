@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from hyperleg_design.errors import OutputError
 
@@ -69,6 +71,23 @@ def write_text(path: str | os.PathLike[str], text: str) -> Path:
         The path.
     """
     return write_bytes(path, text.encode())
+
+
+def plain(value: Any) -> Any:
+    """Write a value as JSON can say it.
+
+    Args:
+        value: numbers, texts, and mappings and sequences of them, of Python or numpy.
+
+    Returns:
+        The same in Python's own types, None for numbers that are not finite.
+    """
+    if isinstance(value, Mapping):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(inner) for inner in value]
+    number = value.item() if hasattr(value, "item") else value
+    return None if isinstance(number, float) and not math.isfinite(number) else number
 
 
 def write_json(path: str | os.PathLike[str], content: object) -> Path:

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from hyperleg_design import writing
@@ -189,3 +190,18 @@ def test_what_somebody_added_to_a_folder_stays(tmp_path):
         "three.csv",
         "mine.txt",
     }
+
+
+def test_plain_values_survive_json_and_what_is_no_number_becomes_none():
+    row = {"a": np.float64(0.5), "b": np.int64(3), "c": np.nan, "d": np.float32(np.inf), "e": "x"}
+    found = writing.plain({**row, 7: np.bool_(True), "f": (1.5, [np.nan])})
+    assert found == {
+        "a": 0.5,
+        "b": 3,
+        "c": None,
+        "d": None,
+        "e": "x",
+        "7": True,
+        "f": [1.5, [None]],
+    }
+    assert json.loads(json.dumps(found, allow_nan=False)) == found

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +10,7 @@ from hyperleg_design.evaluation.result import by_checkpoint, counted
 from hyperleg_design.evaluation.result_tables import trial_table
 from hyperleg_design.evaluation.statistics import Estimate, estimate, share
 from hyperleg_design.report.text import table
+from hyperleg_design.writing import plain
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.result import Evaluation
@@ -81,7 +81,7 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
 def _plain(value: Estimate) -> dict[str, Any]:
     numbers = {k: getattr(value, k) for k in ("mean", "low", "high")}
     return {
-        **{k: v if math.isfinite(v) else None for k, v in numbers.items()},
+        **plain(numbers),
         "seeds": value.seeds,
         "trials": value.trials,
         "missing": value.missing,

@@ -21,12 +21,11 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.protocol import MOST_TRIALS, Protocol, protocol_mapping
 from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.search import ROW, Search
-from hyperleg_design.sweep.searching.plain_values import plain_values
 from hyperleg_design.sweep.trial_runs import evaluate_values
 from hyperleg_design.sweep.trial_table import design_table
 from hyperleg_design.sweep.trials.trial_plan import kind_of
 from hyperleg_design.sweep.tunings.fine_tuning import FineTuning, check_trainable, fine_tune
-from hyperleg_design.writing import write_json
+from hyperleg_design.writing import plain, write_json
 
 if TYPE_CHECKING:
     import optuna
@@ -313,4 +312,4 @@ def _evaluated(
         if name.split(".", 1)[0] not in search.protocols
     }
     table = design_table(search.sweep, pd.concat(parts, ignore_index=True), own)
-    return plain_values({str(name): values[0] for name, values in table.items()})
+    return dict(plain({name: values[0] for name, values in table.items()}))

@@ -32,7 +32,6 @@ from hyperleg_design.sweep.searching.constraint import (
     read_constraint,
     usual_constraints,
 )
-from hyperleg_design.sweep.searching.plain_values import plain_values
 from hyperleg_design.sweep.searching.study_database import (
     DATABASE,
     OWN,
@@ -46,6 +45,7 @@ from hyperleg_design.sweep.spaces.definition import Sweep
 from hyperleg_design.sweep.trial_runs import BATCH, evaluate_values
 from hyperleg_design.sweep.trial_table import design_table
 from hyperleg_design.sweep.trials.trial_plan import Plan, kind_of
+from hyperleg_design.writing import plain
 
 if TYPE_CHECKING:
     import optuna
@@ -274,7 +274,7 @@ def _tell(
 ) -> None:
     import optuna
 
-    trial.set_user_attr(ROW, plain_values(row))
+    trial.set_user_attr(ROW, plain(row))
     values = [float(row.get(name, np.nan)) for name in search.objectives]
     for constraint in search.constraints:
         violation = constraint.violation(float(row.get(constraint.name, np.nan)))

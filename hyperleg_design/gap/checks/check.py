@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +20,7 @@ from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.sampling import Column, Sampling, columns_of, sampling_of
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, NOTE, SEVERITIES, WARNING, Finding
+from hyperleg_design.writing import plain
 
 BOUNDED = (
     "joint_torque",
@@ -104,7 +104,7 @@ class Check:
             "name": self.name,
             "usable": self.usable,
             "rate": self.sampling.rate,
-            **_plain(dataclasses.asdict(self)),
+            **plain(dataclasses.asdict(self)),
         }
 
 
@@ -156,8 +156,7 @@ def _merged(findings: list[Finding]) -> list[Finding]:
     return merged
 
 
-def _required(log: Log, subject: Subject | None) -> list[Finding]:
-    findings = []
+def _required(log: Log, subject: Subject | None) -> Iterator[Finding]:
     targets = any(log.has("position_target", j) for j in log.joints)
     torques = any(log.has("joint_torque", j) for j in log.joints) or any(
         log.has(kind, m) for kind in ("motor_torque", "motor_torque_command") for m in log.motors
@@ -169,92 +168,77 @@ def _required(log: Log, subject: Subject | None) -> list[Finding]:
     )
     if targets and not gains:
         severity = WARNING if torques or currents else ERROR
-        findings.append(
-            Finding(
-                severity,
-                "position_target",
-                "targets without gains say nothing of torques",
-                "declare `gains` in the metadata",
-            )
+        yield Finding(
+            severity,
+            "position_target",
+            "targets without gains say nothing of torques",
+            "declare `gains` in the metadata",
         )
     if currents and not constants:
         severity = WARNING if torques or targets else ERROR
-        findings.append(
-            Finding(
-                severity,
-                "motor_current",
-                "currents without torque constants say nothing of torques",
-                "declare `torque_constant`",
-            )
+        yield Finding(
+            severity,
+            "motor_current",
+            "currents without torque constants say nothing of torques",
+            "declare `torque_constant`",
         )
     if not targets and not torques and not currents:
-        findings.append(
-            Finding(
-                ERROR,
-                "",
-                "neither targets nor torques nor currents",
-                "log position_target with gains, motor_torque or motor_current",
-            )
+        yield Finding(
+            ERROR,
+            "",
+            "neither targets nor torques nor currents",
+            "log position_target with gains, motor_torque or motor_current",
         )
-    return findings
 
 
-def _clock(sampling: Sampling) -> list[Finding]:
-    findings = []
+def _clock(sampling: Sampling) -> Iterator[Finding]:
     if not RULES.clock.slowest < sampling.rate < RULES.clock.fastest:
         text = (
             f"rows come every {sampling.step:.3g} s: the time looks like "
             f"{'milliseconds' if sampling.rate < 1 else 'another unit'}"
         )
-        return [Finding(ERROR, "t", text, "give it in seconds")]
+        yield Finding(ERROR, "t", text, "give it in seconds")
+        return
     if sampling.duration < RULES.clock.shortest or sampling.ticks < RULES.clock.few:
         text = f"is short: {sampling.duration:.2g} s, {sampling.ticks} ticks"
-        findings.append(
-            Finding(
-                WARNING,
-                "t",
-                text,
-                f"record {RULES.clock.shortest:.0f} s or more; 20 s leave enough to hold out",
-            )
+        yield Finding(
+            WARNING,
+            "t",
+            text,
+            f"record {RULES.clock.shortest:.0f} s or more; 20 s leave enough to hold out",
         )
     if sampling.rate < RULES.clock.slow:
         text = f"{sampling.rate:.3g} Hz: friction at reversals and delays blur"
-        findings.append(Finding(WARNING, "t", text, "log at 100 Hz or more"))
+        yield Finding(WARNING, "t", text, "log at 100 Hz or more")
     if sampling.jitter > RULES.clock.jitter:
-        findings.append(
-            Finding(
-                NOTE,
-                "t",
-                f"the clock jitters by {100 * sampling.jitter:.0f} % of a step",
-                "stamps are used as they are",
-            )
+        yield Finding(
+            NOTE,
+            "t",
+            f"the clock jitters by {100 * sampling.jitter:.0f} % of a step",
+            "stamps are used as they are",
         )
     if sampling.dropouts > RULES.clock.dropouts or sampling.longest > 10 * sampling.step:
         text = (
             f"{100 * sampling.dropouts:.1f} % of the time is lost in dropouts, the longest "
             f"{sampling.longest:.3g} s"
         )
-        findings.append(Finding(WARNING, "t", text, "the ticks beside them are left out"))
-    return findings
+        yield Finding(WARNING, "t", text, "the ticks beside them are left out")
 
 
-def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
-    findings = []
+def _columns(columns: tuple[Column, ...], sampling: Sampling) -> Iterator[Finding]:
     for one in columns:
         kind = one.column.partition("/")[0]
         if one.missing == 1.0 and kind == "position":
             continue  # told by `gates`
         if one.missing == 1.0:
-            findings.append(Finding(WARNING, one.column, "holds no values", "it counts as missing"))
+            yield Finding(WARNING, one.column, "holds no values", "it counts as missing")
             continue
         if one.missing > RULES.clock.missing:
-            findings.append(
-                Finding(
-                    WARNING,
-                    one.column,
-                    f"{100 * one.missing:.1f} % of its values are missing",
-                    "the ticks beside them are left out",
-                )
+            yield Finding(
+                WARNING,
+                one.column,
+                f"{100 * one.missing:.1f} % of its values are missing",
+                "the ticks beside them are left out",
             )
         if one.rate < 0.75 * sampling.rate and not one.constant:
             how = "held" if one.held > 1 else "given"
@@ -270,19 +254,17 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
                 )
                 else WARNING
             )
-            findings.append(Finding(severity, one.column, text, "it counts at its own rate"))
+            yield Finding(severity, one.column, text, "it counts at its own rate")
         if kind in BOUNDED and one.saturated > RULES.clock.saturated:
             text = (
                 f"sits at a bound, {one.low:.4g} or {one.high:.4g}, for "
                 f"{100 * one.saturated:.1f} % of the log"
             )
-            findings.append(
-                Finding(
-                    WARNING,
-                    one.column,
-                    text,
-                    "a sensor's range or a drive's limit: effects beyond it do not show",
-                )
+            yield Finding(
+                WARNING,
+                one.column,
+                text,
+                "a sensor's range or a drive's limit: effects beyond it do not show",
             )
         if one.constant and kind in (
             "joint_torque",
@@ -292,22 +274,6 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> list[Finding]:
             "accelerometer",
             "motor_velocity",
         ):
-            findings.append(
-                Finding(
-                    WARNING,
-                    one.column,
-                    f"never changes from {one.low:.4g}",
-                    "is the sensor connected?",
-                )
+            yield Finding(
+                WARNING, one.column, f"never changes from {one.low:.4g}", "is the sensor connected?"
             )
-    return findings
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {k: _plain(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value.item() if hasattr(value, "item") else value

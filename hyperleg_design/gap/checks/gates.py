@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from hyperleg_design.gap.checks.rules import RULES
@@ -20,37 +22,24 @@ def unusable(log: Log, subject: Subject | None = None) -> list[Finding]:
     Returns:
         Errors and warnings; empty for a log that is fit.
     """
-    return [*_ticks(log), *_positions(log), *_sizes(log, subject)]
+    return [*_ticks_and_positions(log), *_sizes(log, subject)]
 
 
-def _ticks(log: Log) -> list[Finding]:
-    if len(log.time) >= RULES.clock.fewest:
-        return []
-    return [
-        Finding(
+def _ticks_and_positions(log: Log) -> Iterator[Finding]:
+    if len(log.time) < RULES.clock.fewest:
+        yield Finding(
             ERROR,
             "t",
             f"has {len(log.time)} ticks, too few for velocities and accelerations",
             f"record {RULES.clock.fewest} at the very least; 20 s at 100 Hz are good",
         )
-    ]
+    for joint in log.joints:
+        if not log.has("position", joint):
+            remedy = "log it, or leave the joint's columns out if it stands still"
+            yield Finding(ERROR, f"position/{joint}", "holds no values", remedy)
 
 
-def _positions(log: Log) -> list[Finding]:
-    return [
-        Finding(
-            ERROR,
-            f"position/{joint}",
-            "holds no values",
-            "log it, or leave the joint's columns out if it stands still",
-        )
-        for joint in log.joints
-        if not log.has("position", joint)
-    ]
-
-
-def _sizes(log: Log, subject: Subject | None) -> list[Finding]:
-    findings = []
+def _sizes(log: Log, subject: Subject | None) -> Iterator[Finding]:
     for column, values in log.signals.items():
         kind, _, name = column.partition("/")
         if kind not in ("joint_torque", "motor_torque", "motor_torque_command"):
@@ -63,13 +52,12 @@ def _sizes(log: Log, subject: Subject | None) -> list[Finding]:
         if usual > RULES.unit.largest_torque or usual > RULES.unit.beyond * limit:
             than = f"{usual / limit:.3g} times the drive's {limit:.3g} Nm" if limit < np.inf else ""
             what = f"is {than or f'{usual:.3g} Nm'} for a tenth of the log: no such torque"
-            findings.append(Finding(ERROR, column, what, "convert to Nm"))
+            yield Finding(ERROR, column, what, "convert to Nm")
         elif usual > RULES.unit.doubtful * limit:
             what = f"is {usual / limit:.3g} times the drive's {limit:.3g} Nm for a tenth of the log"
-            findings.append(
-                Finding(WARNING, column, what, "check its unit, and the limit in the robot's file")
+            yield Finding(
+                WARNING, column, what, "check its unit, and the limit in the robot's file"
             )
-    return findings
 
 
 def _limit(kind: str, name: str, subject: Subject | None) -> float:

@@ -8,6 +8,7 @@ another's motion.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -21,7 +22,7 @@ FEWEST = 2
 """Rows from which a motion has a spread."""
 
 
-def implausible_motion(log: Log) -> list[Finding]:
+def implausible_motion(log: Log) -> Iterator[Finding]:
     """Find velocities that do not fit the change of the positions: units, signs, swapped joints.
 
     Args:
@@ -32,16 +33,15 @@ def implausible_motion(log: Log) -> list[Finding]:
     """
     joints = [j for j in log.joints if log.has("velocity", j)]
     if not joints:
-        return []
+        return
     moved, integral = _windows(log, joints)
     if len(moved) < FEWEST:
-        return []
+        return
     slope, fit = fitted_slopes(moved, integral)
     moving = (
         np.nanstd(moved, axis=0)
         > 3 * np.nanmedian(np.abs(np.diff(moved, axis=0)), axis=0) / math.sqrt(len(moved)) + 1e-4
     )
-    findings: list[Finding] = []
     units = (
         (DEGREES, "velocity in deg/s or position in another unit"),
         (1 / DEGREES, "position in degrees"),
@@ -52,13 +52,11 @@ def implausible_motion(log: Log) -> list[Finding]:
         if not moving[i] or not np.isfinite(fit[i]):
             continue
         if np.nanstd(integral[:, i]) == 0:
-            findings.append(
-                Finding(
-                    ERROR,
-                    column,
-                    "never changes though the joint moves",
-                    "leave the column out, or mend the sensor",
-                )
+            yield Finding(
+                ERROR,
+                column,
+                "never changes though the joint moves",
+                "leave the column out, or mend the sensor",
             )
             continue
         rivals = fitted_correlations(moved, integral[:, i])
@@ -77,39 +75,30 @@ def implausible_motion(log: Log) -> list[Finding]:
                 f"follows the motion of {joints[best]} (correlation {rivals[best]:.2f}), not "
                 f"its own ({fit[i]:.2f})"
             )
-            findings.append(
-                Finding(ERROR, column, text, "the columns of two joints are swapped: rename them")
-            )
+            yield Finding(ERROR, column, text, "the columns of two joints are swapped: rename them")
         elif fit[i] < -RULES.unit.fits:
-            findings.append(
-                Finding(
-                    ERROR,
-                    column,
-                    "runs against the rate of its position",
-                    "flip the sign of one of the two",
-                )
+            yield Finding(
+                ERROR,
+                column,
+                "runs against the rate of its position",
+                "flip the sign of one of the two",
             )
         elif fit[i] > RULES.unit.strange and unit:
             text = f"is {slope[i]:.3g} times the rate of its position: {unit}"
-            findings.append(Finding(ERROR, column, text, "convert to rad and rad/s"))
+            yield Finding(ERROR, column, text, "convert to rad and rad/s")
         elif fit[i] > RULES.unit.fits and abs(slope[i] - 1) > RULES.unit.tolerance:
             text = f"is {slope[i]:.3g} times the rate of its position"
-            findings.append(
-                Finding(
-                    WARNING,
-                    column,
-                    text,
-                    "is it the motor's, before a reduction? then call it motor_velocity",
-                )
+            yield Finding(
+                WARNING,
+                column,
+                text,
+                "is it the motor's, before a reduction? then call it motor_velocity",
             )
         elif fit[i] < RULES.unit.strange:
             text = f"hardly follows the rate of its position (correlation {fit[i]:.2f})"
-            findings.append(
-                Finding(
-                    WARNING, column, text, "check clock and filter of the velocity, or leave it out"
-                )
+            yield Finding(
+                WARNING, column, text, "check clock and filter of the velocity, or leave it out"
             )
-    return findings
 
 
 def _windows(log: Log, joints: list[str]) -> tuple[np.ndarray, np.ndarray]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import difflib
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -30,18 +31,17 @@ def implausible(log: Log, subject: Subject | None = None) -> list[Finding]:
     Returns:
         The findings.
     """
-    findings = [
+    return [
         *implausible_motion(log),
         *implausible_targets(log, subject),
         *_magnitudes(log),
         *implausible_torques(log, subject),
         *_stuck(log),
+        *(_robot(log, subject) if subject is not None else ()),
     ]
-    return findings + (_robot(log, subject) if subject is not None else [])
 
 
-def _magnitudes(log: Log) -> list[Finding]:
-    findings: list[Finding] = []
+def _magnitudes(log: Log) -> Iterator[Finding]:
     for column, values in log.signals.items():
         kind = column.partition("/")[0]
         if not np.isfinite(values).any():
@@ -55,13 +55,11 @@ def _magnitudes(log: Log) -> list[Finding]:
             text = (
                 f"spans {float(np.nanmax(values) - np.nanmin(values)):.3g} rad, two turns or more"
             )
-            findings.append(
-                Finding(
-                    WARNING,
-                    column,
-                    text,
-                    "if it is in degrees, convert to rad; a joint that turns on and on is well",
-                )
+            yield Finding(
+                WARNING,
+                column,
+                text,
+                "if it is in degrees, convert to rad; a joint that turns on and on is well",
             )
         limit, unit = {
             "motor_current": (RULES.unit.largest_current, "mA: convert to A"),
@@ -73,13 +71,11 @@ def _magnitudes(log: Log) -> list[Finding]:
             "gyro": (RULES.unit.largest_rate, "deg/s: convert to rad/s"),
         }.get(kind, (math.inf, ""))
         if middle > limit or (kind == "gyro" and largest > 2 * limit):
-            findings.append(
-                Finding(
-                    ERROR,
-                    column,
-                    f"reaches {largest:.4g}, no such thing in this unit",
-                    f"looks like {unit}",
-                )
+            yield Finding(
+                ERROR,
+                column,
+                f"reaches {largest:.4g}, no such thing in this unit",
+                f"looks like {unit}",
             )
     if all(log.has("accelerometer", axis) for axis in "xyz"):
         # axes that are told in turn are each known all along
@@ -90,30 +86,24 @@ def _magnitudes(log: Log) -> list[Finding]:
         )
         if not 5 < weight < 20:
             text = f"has a median length of {weight:.3g} m/s^2 where gravity makes 9.8"
-            findings.append(
-                Finding(
-                    ERROR,
-                    "accelerometer",
-                    text,
-                    "convert from g, or leave gravity in: +9.81 upward at rest",
-                )
+            yield Finding(
+                ERROR,
+                "accelerometer",
+                text,
+                "convert from g, or leave gravity in: +9.81 upward at rest",
             )
     if all(log.has("base_orientation", axis) for axis in "wxyz"):
         length = np.linalg.norm(log.vector("base_orientation"), axis=1)
         if abs(float(np.nanmedian(length)) - 1) > 0.01:
-            findings.append(
-                Finding(
-                    ERROR,
-                    "base_orientation",
-                    "is no unit quaternion",
-                    "give w, x, y, z, world from base",
-                )
+            yield Finding(
+                ERROR,
+                "base_orientation",
+                "is no unit quaternion",
+                "give w, x, y, z, world from base",
             )
-    return findings
 
 
-def _stuck(log: Log) -> list[Finding]:
-    findings: list[Finding] = []
+def _stuck(log: Log) -> Iterator[Finding]:
     for joint in log.joints:
         values = log.column(f"position/{joint}")
         target = log.column(f"position_target/{joint}")
@@ -125,19 +115,15 @@ def _stuck(log: Log) -> list[Finding]:
         turned = float(np.nanmax(np.abs(speed))) if np.isfinite(speed).any() else 0.0
         if np.nanmax(values) == np.nanmin(values):
             if driven > 0.05 or turned > 0.1:
-                findings.append(
-                    Finding(
-                        ERROR,
-                        f"position/{joint}",
-                        "never changes though the joint is driven",
-                        "mend the sensor; this joint tells nothing",
-                    )
+                yield Finding(
+                    ERROR,
+                    f"position/{joint}",
+                    "never changes though the joint is driven",
+                    "mend the sensor; this joint tells nothing",
                 )
             else:
-                findings.append(
-                    Finding(
-                        NOTE, f"position/{joint}", "never changes", "move this joint to learn of it"
-                    )
+                yield Finding(
+                    NOTE, f"position/{joint}", "never changes", "move this joint to learn of it"
                 )
             continue
         stuck = frozen(log, joint)
@@ -147,54 +133,42 @@ def _stuck(log: Log) -> list[Finding]:
                 f"is frozen for {length:.2g} s from {log.time[stuck.start]:.4g} s while the "
                 f"joint is driven"
             )
-            findings.append(
-                Finding(
-                    WARNING,
-                    f"position/{joint}",
-                    text,
-                    "a stuck sensor or a blocked joint: this stretch is left out",
-                )
+            yield Finding(
+                WARNING,
+                f"position/{joint}",
+                text,
+                "a stuck sensor or a blocked joint: this stretch is left out",
             )
-    return findings
 
 
-def _robot(log: Log, subject: Subject) -> list[Finding]:
+def _robot(log: Log, subject: Subject) -> Iterator[Finding]:
     known, own = set(subject.joints), log.joints
     strangers = [joint for joint in own if joint not in known]
     if len(strangers) == len(own):
         text = f"has joints {', '.join(own[:4])}; the robot has {', '.join(subject.joints[:4])}"
-        return [
-            Finding(
-                ERROR,
-                "",
-                f"is a log of another robot: it {text}",
-                "choose the robot of the log, or rename the columns",
-            )
-        ]
-    findings = []
+        yield Finding(
+            ERROR,
+            "",
+            f"is a log of another robot: it {text}",
+            "choose the robot of the log, or rename the columns",
+        )
+        return
     if strangers:
         near = [
             f"{s} ({m[0]}?)" if (m := difflib.get_close_matches(s, subject.joints, 1)) else s
             for s in strangers
         ]
-        findings.append(
-            Finding(
-                ERROR,
-                f"position/{strangers[0]}",
-                f"joints that the robot does not have: {', '.join(near[:5])}",
-                "rename or remove them",
-            )
+        yield Finding(
+            ERROR,
+            f"position/{strangers[0]}",
+            f"joints that the robot does not have: {', '.join(near[:5])}",
+            "rename or remove them",
         )
     lacking = [joint for joint in subject.joints if joint not in own]
     if lacking:
         text = f"joints of the robot without positions: {', '.join(lacking[:6])}"
-        findings.append(
-            Finding(WARNING, "", text, "they are taken to stand still; log them if they move")
-        )
-    lower, upper = (
-        np.broadcast_to(subject.position_low, len(subject.joints)),
-        np.broadcast_to(subject.position_high, len(subject.joints)),
-    )
+        yield Finding(WARNING, "", text, "they are taken to stand still; log them if they move")
+    lower, upper = subject.position_low, subject.position_high
     outside = []
     for i, joint in enumerate(subject.joints):
         if joint in own and upper[i] > lower[i]:
@@ -208,12 +182,9 @@ def _robot(log: Log, subject: Subject) -> list[Finding]:
             f"{joint} by {beyond:.3g} rad" for joint, beyond, _ in (far or outside)[:4]
         )
         severity = ERROR if far else WARNING
-        findings.append(
-            Finding(
-                severity,
-                f"position/{(far or outside)[0][0]}",
-                f"beyond the robot's range: {text}",
-                "check unit, zero and sign, and the robot",
-            )
+        yield Finding(
+            severity,
+            f"position/{(far or outside)[0][0]}",
+            f"beyond the robot's range: {text}",
+            "check unit, zero and sign, and the robot",
         )
-    return findings

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, WARNING, Finding
 
 
-def implausible_targets(log: Log, subject: Subject | None) -> list[Finding]:
+def implausible_targets(log: Log, subject: Subject | None) -> Iterator[Finding]:
     """Find positions that do not follow their targets: units, signs, swapped joints, late clocks.
 
     Args:
@@ -26,13 +27,12 @@ def implausible_targets(log: Log, subject: Subject | None) -> list[Finding]:
     """
     joints = [j for j in log.joints if log.has("position_target", j)]
     if not joints:
-        return []
+        return
     position, target = log.stack("position", joints), log.stack("position_target", joints)
     lag = _common_lag(log, position, target)
     if lag:
         position, target = position[lag:], target[:-lag]
     _, fit = fitted_slopes(position, target)
-    findings: list[Finding] = []
     for i, joint in enumerate(joints):
         column = f"position_target/{joint}"
         if not np.isfinite(fit[i]) or np.nanstd(target[:, i]) < 1e-3:
@@ -50,17 +50,13 @@ def implausible_targets(log: Log, subject: Subject | None) -> list[Finding]:
                 f"is followed by {joints[best]} (correlation {rivals[best]:.2f}), not by "
                 f"{joint} ({fit[i]:.2f})"
             )
-            findings.append(
-                Finding(ERROR, column, text, "the columns of two joints are swapped: rename them")
-            )
+            yield Finding(ERROR, column, text, "the columns of two joints are swapped: rename them")
         elif fit[i] < -RULES.unit.fits and ratio < 10 and not _pushed(log, subject, joint):
             # what stands on the ground, and whose torques nobody logged, may be pushed against its
             # targets
             severity = WARNING if log.metadata.base == "floating" else ERROR
-            findings.append(
-                Finding(
-                    severity, column, "runs against its position", "flip the sign of one of the two"
-                )
+            yield Finding(
+                severity, column, "runs against its position", "flip the sign of one of the two"
             )
         elif fit[i] > RULES.unit.strange and (
             abs(ratio / DEGREES - 1) < 0.4 or abs(ratio * DEGREES - 1) < 0.4
@@ -77,8 +73,7 @@ def implausible_targets(log: Log, subject: Subject | None) -> list[Finding]:
                 f"moves {ratio:.3g} times as far as its position: one of the two "
                 f"{'is' if severity == ERROR else 'may be'} in degrees"
             )
-            findings.append(Finding(severity, column, text, "convert both to rad"))
-    return findings
+            yield Finding(severity, column, text, "convert both to rad")
 
 
 def _pushed(log: Log, subject: Subject | None, joint: str) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from hyperleg_design.gap.checks.rules import RULES
@@ -12,7 +14,7 @@ from hyperleg_design.gap.results.finding import ERROR, WARNING, Finding
 from hyperleg_design.gap.signals.channels import applied, of_motors
 
 
-def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
+def implausible_torques(log: Log, subject: Subject | None) -> Iterator[Finding]:
     """Find torques that do not fit the declared gains, and currents that do not fit torques: wrong
     units.
 
@@ -23,7 +25,6 @@ def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
     Returns:
         The findings.
     """
-    findings: list[Finding] = []
     told: set[str] = set()
     for column, asked, torque in asked_torque(log, subject):
         place = column.partition("/")[2]
@@ -32,10 +33,8 @@ def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
         told.add(place)
         slope, fit = fitted_slopes(asked[:, None], torque[:, None])
         if fit[0] < -RULES.unit.fits:
-            findings.append(
-                Finding(
-                    WARNING, column, "runs against what target and gains ask for", "check its sign"
-                )
+            yield Finding(
+                WARNING, column, "runs against what target and gains ask for", "check its sign"
             )
         elif fit[0] > RULES.unit.strange and any(
             abs(slope[0] / v - 1) < RULES.unit.tolerance for v in (DEGREES, 1 / DEGREES)
@@ -48,10 +47,10 @@ def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
             remedy = "declare gains in Nm/rad and Nms/rad" + (
                 ", unless a gear of that ratio lies between" if geared else ""
             )
-            findings.append(Finding(WARNING if geared else ERROR, column, text, remedy))
+            yield Finding(WARNING if geared else ERROR, column, text, remedy)
         elif fit[0] > RULES.unit.strange and _thousand(slope[0]):
             text = f"is {slope[0]:.3g} times what targets and declared gains ask for: it is in mNm"
-            findings.append(Finding(ERROR, column, text, "convert to Nm"))
+            yield Finding(ERROR, column, text, "convert to Nm")
     for motor in log.motors:
         if not log.has("motor_current", motor):
             continue
@@ -67,9 +66,8 @@ def implausible_torques(log: Log, subject: Subject | None) -> list[Finding]:
                         f"makes {slope[0]:.3g} times the torque with the declared torque "
                         f"constant: it is in mA"
                     )
-                    findings.append(Finding(ERROR, f"motor_current/{motor}", text, "convert to A"))
+                    yield Finding(ERROR, f"motor_current/{motor}", text, "convert to A")
                 break
-    return findings
 
 
 def _thousand(slope: float) -> bool:

@@ -18,6 +18,7 @@ from hyperleg_design.gap.playback.overlay import Overlay
 from hyperleg_design.gap.playback.replay import best_input, replay
 from hyperleg_design.gap.playback.windows import short_windows
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.writing import plain
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -183,14 +184,5 @@ def mapping(logs: Sequence[Replayed], walk: Sequence[Changed]) -> dict[str, Any]
     Returns:
         Nested mappings.
     """
-
-    def plain(row: dict[str, Any]) -> dict[str, Any]:
-        return {
-            key: None if isinstance(value, float) and not np.isfinite(value) else value
-            for key, value in row.items()
-        }
-
-    return {
-        "replayed": [plain(asdict(one)) for one in logs],
-        "walked": [plain(asdict(one)) for one in walk],
-    }
+    rows = {"replayed": [asdict(one) for one in logs], "walked": [asdict(one) for one in walk]}
+    return dict(plain(rows))

@@ -27,6 +27,7 @@ from hyperleg_design.gap.playback.sheets import (
     sheets_of,
 )
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.writing import plain
 
 
 @dataclass(frozen=True)
@@ -90,14 +91,11 @@ class Gap:
         Returns:
             Nested mappings; what is unknown is None.
         """
-        rows = [
-            {
-                k: None if isinstance(v, float) and not np.isfinite(v) else v
-                for k, v in asdict(r).items()
-            }
-            for r in self.rows
-        ]
-        return {"floor_from": self.floor_from, "notes": list(self.notes), "rows": rows}
+        return {
+            "floor_from": self.floor_from,
+            "notes": list(self.notes),
+            "rows": plain([asdict(row) for row in self.rows]),
+        }
 
     def select(
         self, signal: str = "", kind: str = "", location: str = "", regime: str = "all"

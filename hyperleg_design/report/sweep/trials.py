@@ -7,8 +7,6 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from hyperleg_design.report.page import Details, Explorer, Page, Section, Table, render
 from hyperleg_design.report.sweep.explorer import explorer
 from hyperleg_design.report.sweep.page import sweep_content
@@ -33,7 +31,7 @@ from hyperleg_design.sweep.trial_table import (
     front,
     sensitivities,
 )
-from hyperleg_design.writing import write_bytes, write_json, write_text
+from hyperleg_design.writing import plain, write_bytes, write_json, write_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -287,11 +285,6 @@ def _best_tables(
 
 def _plain(designs: pd.DataFrame, columns: list[str]) -> list[dict[str, Any]]:
     return [
-        {name: _value(row[name]) for name in columns if name in designs}
+        {name: plain(row[name]) for name in columns if name in designs}
         for _, row in designs.iterrows()
     ]
-
-
-def _value(value: Any) -> Any:
-    plain = value.item() if hasattr(value, "item") else value
-    return None if isinstance(plain, float) and not np.isfinite(plain) else plain

@@ -14,6 +14,7 @@ from hyperleg_design.evaluation.statistics import AGREES, DIFFERS, Estimate
 from hyperleg_design.evaluation.versus_paper import NOT_REPRODUCED, VARIANTS, PaperRow, paper_rows
 from hyperleg_design.report.page import Cell, Details, Table
 from hyperleg_design.report.walks.evaluated import T_TEST, WALK, Evaluated
+from hyperleg_design.writing import plain
 
 SUMMARY = {
     WALK: (
@@ -90,9 +91,6 @@ def row_facts(row: PaperRow) -> dict[str, Any]:
     Returns:
         Values by name, None where there is none.
     """
-
-    def plain(value: float) -> float | None:
-        return float(value) if math.isfinite(value) else None
 
     def side(estimate: Estimate) -> dict[str, Any]:
         numbers = {

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,13 @@ from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol
 from hyperleg_design.evaluation.robustness import CurvePoint, curves, robustness
 from hyperleg_design.report.style import save
 from hyperleg_design.report.walks.robustness_figure import robustness_figure
-from hyperleg_design.writing import check_output_folder, output_folder, write_bytes, write_json
+from hyperleg_design.writing import (
+    check_output_folder,
+    output_folder,
+    plain,
+    write_bytes,
+    write_json,
+)
 
 FIGURE, TRIALS, CURVES = "robustness.png", "trials.parquet", "curves.json"
 """Files of the folder."""
@@ -73,20 +78,17 @@ def run_robustness(
             progress=note,
         )
     points = curves(table, "t_test" if isinstance(protocol, TTestProtocol) else "walk")
-    plain = [_plain(point) for point in points]
+    rows = [_row(point) for point in points]
     with output_folder(out) as folder:
         write_bytes(folder / TRIALS, table.to_parquet(index=False))
-        write_json(folder / CURVES, plain)
+        write_json(folder / CURVES, rows)
         save(robustness_figure(points), folder / FIGURE)
-    return plain
+    return rows
 
 
-def _plain(point: CurvePoint) -> dict[str, Any]:
+def _row(point: CurvePoint) -> dict[str, Any]:
     """A point as plain values, None for what is not a number."""
     values = dataclasses.asdict(point)
     estimate = values.pop("estimate")
     estimate["confidence"] = estimate.pop("level")  # `level` is the condition's
-    return values | {
-        key: None if isinstance(v, float) and not math.isfinite(v) else v
-        for key, v in estimate.items()
-    }
+    return dict(plain(values | estimate))
