@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from hyperleg_design.gap.model.base import BaseMotion
-from hyperleg_design.gap.model.newton_euler import (
-    Motion,
-    base_start,
-    child_motion,
-    cross,
-    to_parent,
+from hyperleg_design.gap.model.recursion import (
+    fixed_motion,
+    fixed_wrench,
+    frame_motions,
+    inertial_wrench,
+    on_parent,
+    with_products,
 )
+from hyperleg_design.gap.model.rigid import base_start
 from hyperleg_design.gap.model.subject import Subject
 
 
@@ -42,48 +44,17 @@ def regressors(
     q, v, a = (
         np.ascontiguousarray(x.T) for x in (position - tree.reference, velocity, acceleration)
     )
-    ticks = q.shape[1]
-    motion = Motion(*(np.broadcast_to(x, (3, ticks)) for x in base_start(subject, base, ticks)))
+    ticks, columns = q.shape[1], 10
     sin, cos = np.sin(q), np.cos(q)
-    for j in chain:
-        motion = child_motion(tree, j, motion, q[j], v[j], a[j], sin[j], cos[j])
-    arm, into = tree.link_offset[place][:, None], tree.link_rotation[place].T
-    linear = (
-        motion.linear + cross(motion.angular, arm) + cross(motion.spin, cross(motion.spin, arm))
-    )
-    block = _body_regressor(Motion(into @ motion.spin, into @ motion.angular, into @ linear))
-    columns = block.shape[1]
-    # Ten wrenches, each carried down the chain like any other.
-    force, moment = block[:3].reshape(3, -1), block[3:].reshape(3, -1)
-    force, moment = into.T @ force, into.T @ moment
-    moment = moment + cross(arm, force)
+    motion = frame_motions(tree, q, v, a, sin, cos, base_start(subject, base, ticks), chain)
+    pose = tree.link_rotation[place], tree.link_offset[place]
+    own = with_products(fixed_motion(*pose) @ motion[int(tree.link_joint[place])])
+    units = np.stack([inertial_wrench(unit) for unit in np.eye(columns)], 1)
+    # ten wrenches, each carried down the chain like any other
+    wrench = fixed_wrench(*pose) @ (units @ own).reshape(6, -1)
     torque = np.zeros((ticks, tree.count, columns))
     for j in reversed(chain):
-        own = moment if tree.hinge[j] else force
-        torque[:, j] = own[2].reshape(columns, ticks).T
-        force, moment = to_parent(
-            tree,
-            j,
-            force,
-            moment,
-            np.tile(q[j], columns),
-            np.tile(sin[j], columns),
-            np.tile(cos[j], columns),
-        )
-    return torque, np.concatenate([force, moment]).reshape(6, columns, ticks).transpose(2, 0, 1)
-
-
-def _body_regressor(motion: Motion) -> np.ndarray:
-    """Force and moment over the ten parameters of a body in its own frame `(6, 10, t)`."""
-    spin, angular, linear = motion.spin, motion.angular, motion.linear
-    block = np.zeros((6, 10, linear.shape[1]))
-    block[:3, 0] = linear
-    for column, axis in enumerate(np.eye(3)):
-        first = axis[:, None]
-        block[:3, 1 + column] = cross(angular, first) + cross(spin, cross(spin, first))
-        block[3:, 1 + column] = cross(first, linear)
-    for column, (i, j) in enumerate(((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))):
-        unit = np.zeros((3, 3))
-        unit[i, j] = unit[j, i] = 1.0
-        block[3:, 4 + column] = unit @ angular + cross(spin, unit @ spin)
-    return block
+        torque[:, j] = wrench[5 if tree.hinge[j] else 2].reshape(columns, ticks).T
+        turned = (np.tile(x, columns) for x in (q[j], sin[j], cos[j]))
+        wrench = on_parent(tree, j, wrench, *turned)
+    return torque, wrench.reshape(6, columns, ticks).transpose(2, 0, 1)

@@ -62,17 +62,43 @@ def fixed_parts(tree: Mechanism) -> tuple[Joint, ...]:
 def _fixed_parts(tree: Mechanism) -> list[Joint]:
     found = []
     for rotation, offset, inertial in zip(tree.rotation, tree.offset, tree.inertial, strict=True):
-        into = rotation.T
-        down = np.zeros((9, 15))
-        down[SPIN, SPIN] = down[ANGULAR, ANGULAR] = into
-        down[LINEAR] = into @ _of_point(offset)
-        along = into @ _of_point(rotation[:, 2])
+        along = rotation.T @ _of_point(rotation[:, 2])
         along[:, LINEAR] = 0.0
-        up = np.zeros((6, 6))
-        up[:3, :3] = up[3:, 3:] = rotation
-        up[3:, :3] = _skew(offset) @ rotation
         lever = _skew(rotation[:, 2]) @ rotation
+        down, up = fixed_motion(rotation, offset), fixed_wrench(rotation, offset)
         found.append(Joint(down, along, inertial_wrench(inertial), up, lever))
+    return found
+
+
+def fixed_motion(rotation: np.ndarray, offset: np.ndarray) -> np.ndarray:
+    """Compute the matrix of the motion of a frame that is fixed in another.
+
+    Args:
+        rotation: of the frame in the other `(3, 3)`.
+        offset: of the frame in the other `(3,)` [m].
+
+    Returns:
+        The frame's motion over that of the other `(9, 15)`.
+    """
+    found = np.zeros((9, 15))
+    found[SPIN, SPIN] = found[ANGULAR, ANGULAR] = rotation.T
+    found[LINEAR] = rotation.T @ _of_point(offset)
+    return found
+
+
+def fixed_wrench(rotation: np.ndarray, offset: np.ndarray) -> np.ndarray:
+    """Compute the matrix that carries a wrench over to the frame in which its own is fixed.
+
+    Args:
+        rotation: as of `fixed_motion`.
+        offset: as of `fixed_motion`.
+
+    Returns:
+        Force and moment in the other frame, about its origin, over those in this one `(6, 6)`.
+    """
+    found = np.zeros((6, 6))
+    found[:3, :3] = found[3:, 3:] = rotation
+    found[3:, :3] = _skew(offset) @ rotation
     return found
 
 
@@ -146,20 +172,55 @@ def torques(
         Torques of these joints `(t, len(joints))`, and the base's wrench, its own and that of these
         joints `(t, 6)`.
     """
-    ticks = position.shape[1]
     sin, cos = np.sin(position), np.cos(position)
+    motions = frame_motions(tree, position, velocity, acceleration, sin, cos, root, joints)
     parts = fixed_parts(tree)
-    base = _with_products(root)
-    motions: dict[int, np.ndarray] = {BASE: base}
-    wrenches = {BASE: inertial_wrench(tree.base_inertial) @ base}
+    wrenches = {j: parts[j].wrench @ motions[j] for j in joints}
+    wrenches[BASE] = inertial_wrench(tree.base_inertial) @ motions[BASE]
+    torque = np.empty((position.shape[1], len(joints)))
+    for place in range(len(joints) - 1, -1, -1):
+        j = joints[place]
+        torque[:, place] = wrenches[j][5] if tree.hinge[j] else wrenches[j][2]
+        wrenches[int(tree.parent[j])] += on_parent(
+            tree, j, wrenches[j], position[j], sin[j], cos[j]
+        )
+    return torque, wrenches[BASE].T
+
+
+def frame_motions(
+    tree: Mechanism,
+    position: np.ndarray,
+    velocity: np.ndarray,
+    acceleration: np.ndarray,
+    sin: np.ndarray,
+    cos: np.ndarray,
+    root: np.ndarray,
+    joints: Sequence[int],
+) -> dict[int, np.ndarray]:
+    """Compute the motion of the frames of some joints, from the base on.
+
+    Args:
+        tree: the robot, of n joints.
+        position: as of `torques`.
+        velocity: as of `torques`.
+        acceleration: as of `torques`.
+        sin: of the positions `(n, t)`.
+        cos: of the positions `(n, t)`.
+        root: as of `torques`.
+        joints: parents before children, with all joints between them and the base.
+
+    Returns:
+        Motion by joint, and of the base, `(15, t)` each.
+    """
+    parts = fixed_parts(tree)
+    motions = {BASE: with_products(root)}
     for j in joints:
         above, part = motions[int(tree.parent[j])], parts[j]
-        whole = np.empty((15, ticks))
-        motion = whole[:9]
-        np.matmul(part.down, above, out=motion)
+        whole = np.empty((15, position.shape[1]))
+        motion = np.matmul(part.down, above, out=whole[:9])
         v, a = velocity[j], acceleration[j]
         if tree.hinge[j]:
-            _turn(motion.reshape(3, 3, ticks), sin[j], cos[j])
+            _turn(motion.reshape(3, 3, -1), sin[j], cos[j])
             motion[3] += motion[1] * v
             motion[4] -= motion[0] * v
             motion[5] += a
@@ -169,21 +230,38 @@ def torques(
             motion[6] += 2 * motion[1] * v
             motion[7] -= 2 * motion[0] * v
             motion[8] += a
-        _products(whole)
-        motions[j], wrenches[j] = whole, part.wrench @ whole
-    torque = np.empty((ticks, len(joints)))
-    for place in range(len(joints) - 1, -1, -1):
-        j = joints[place]
-        own, part = wrenches[j], parts[j]
-        torque[:, place] = own[5] if tree.hinge[j] else own[2]
-        if tree.hinge[j]:
-            _turn(own.reshape(2, 3, ticks), -sin[j], cos[j])
-            wrenches[int(tree.parent[j])] += part.up @ own
-        else:
-            up = part.up @ own
-            up[3:] += (part.lever @ own[:3]) * position[j]
-            wrenches[int(tree.parent[j])] += up
-    return torque, wrenches[BASE].T
+        motions[j] = _products(whole)
+    return motions
+
+
+def on_parent(
+    tree: Mechanism,
+    joint: int,
+    wrench: np.ndarray,
+    position: np.ndarray,
+    sin: np.ndarray,
+    cos: np.ndarray,
+) -> np.ndarray:
+    """Carry a wrench on the frame of a joint over to the frame of its parent.
+
+    Args:
+        tree: the robot.
+        joint: index of the joint.
+        wrench: force and moment `(6, t)`; it is turned in place.
+        position: of the joint `(t,)` [rad or m].
+        sin: sine of the position `(t,)`.
+        cos: cosine of the position `(t,)`.
+
+    Returns:
+        Force and moment on the parent `(6, t)`.
+    """
+    part = fixed_parts(tree)[joint]
+    if tree.hinge[joint]:
+        _turn(wrench.reshape(2, 3, -1), -sin, cos)
+        return np.asarray(part.up @ wrench)
+    up = part.up @ wrench
+    up[3:] += (part.lever @ wrench[:3]) * position
+    return np.asarray(up)
 
 
 def _turn(vectors: np.ndarray, sin: np.ndarray, cos: np.ndarray) -> None:
@@ -196,14 +274,19 @@ def _turn(vectors: np.ndarray, sin: np.ndarray, cos: np.ndarray) -> None:
     y -= across
 
 
-def _with_products(motion: np.ndarray) -> np.ndarray:
-    """A motion `(9, t)` with the products of its angular velocities `(15, t)`."""
-    whole = np.empty((15, motion.shape[1]))
-    whole[:9] = motion
-    _products(whole)
-    return whole
+def with_products(motion: np.ndarray) -> np.ndarray:
+    """Append the products of its angular velocities to a motion.
+
+    Args:
+        motion: `(9, t)`.
+
+    Returns:
+        The motion `(15, t)`.
+    """
+    return _products(np.concatenate([motion, np.empty((len(PAIRS), motion.shape[1]))]))
 
 
-def _products(whole: np.ndarray) -> None:
+def _products(whole: np.ndarray) -> np.ndarray:
     for row, (i, j) in enumerate(PAIRS, start=PRODUCTS.start):
         np.multiply(whole[i], whole[j], out=whole[row])
+    return whole

@@ -16,7 +16,6 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from hyperleg_design.gap.model.base import BaseMotion
-from hyperleg_design.gap.model.newton_euler import base_start
 from hyperleg_design.gap.model.recursion import torques
 from hyperleg_design.gap.model.subject import Subject
 
@@ -104,6 +103,25 @@ def base_wrench(
     return _dynamics(subject, position, velocity, acceleration, base, False)[1]
 
 
+def base_start(subject: Subject, base: BaseMotion | None, rows: int) -> np.ndarray:
+    """Read the motion of the base, from which the recursion starts.
+
+    Args:
+        subject: the robot.
+        base: its motion, None where it stands still.
+        rows: ticks `t`.
+
+    Returns:
+        Angular velocity [rad/s], angular acceleration [rad/s^2] and acceleration minus gravity
+        [m/s^2] in the base's frame `(9, t)`.
+    """
+    if base is None or not subject.floating:
+        return np.tile(np.concatenate([np.zeros(6), -subject.gravity])[:, None], rows)
+    return np.concatenate(
+        [base.angular_velocity.T, base.angular_acceleration.T, base.specific_force.T]
+    )
+
+
 def _dynamics(
     subject: Subject,
     position: np.ndarray,
@@ -122,17 +140,16 @@ def _dynamics(
     )
     ticks, rows = q.shape[1], shape[-2] if len(shape) > 1 else 1
     torque, wrench = np.empty((ticks, len(own))), np.empty((ticks, 6))
-    start = np.concatenate(base_start(subject, base, rows))
+    start = base_start(subject, base, rows)
     for first in range(0, ticks, BLOCK):
         part = slice(first, min(first + BLOCK, ticks))
         index = np.arange(part.start, part.stop) % rows
-        root = start[:, index] if start.shape[1] > 1 else np.tile(start, len(index))
         torque[part], wrench[part] = torques(
             tree,
             np.ascontiguousarray(q[:, part]),
             np.ascontiguousarray(v[:, part]),
             np.ascontiguousarray(a[:, part]),
-            root,
+            start[:, index],
             own,
         )
     if rotors:
