@@ -334,6 +334,18 @@ def motor_strength(subject: Subject, motor: int) -> float:
     )
 
 
+def motor_strengths(subject: Subject) -> np.ndarray:
+    """Torque for which each motor is made, as `motor_strength`.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        The torques `(m,)` [Nm].
+    """
+    return np.array([motor_strength(subject, motor) for motor in range(len(subject.motors))])
+
+
 def joint_inertia(subject: Subject) -> np.ndarray:
     """Inertia at each joint alone at the posture of rest, rotors left out `(n,)` [kg m^2].
 

@@ -77,18 +77,30 @@ def band_limited(values: np.ndarray, step: float, cutoff: float) -> np.ndarray:
     Returns:
         The filtered signal `(t,)`.
     """
-    from scipy.signal import butter, sosfiltfilt
-
     if not np.isfinite(values).any():
         return values
-    filled = bridged(values)
-    if cutoff >= 0.45 / step or len(values) < 20:
-        return filled
-    return np.asarray(
-        sosfiltfilt(
-            butter(2, cutoff, fs=1 / step, output="sos"), filled, padlen=min(len(values) - 1, 100)
-        )
-    )
+    return low_passed(bridged(values), step, cutoff, 100)
+
+
+def low_passed(values: np.ndarray, step: float, cutoff: float, padding: int = 60) -> np.ndarray:
+    """Filter signals forwards and backwards with a Butterworth filter of second order.
+
+    Args:
+        values: `(..., t)`.
+        step: between ticks [s].
+        cutoff: frequency above which little passes [Hz].
+        padding: ticks by which signals are continued at their ends.
+
+    Returns:
+        `(..., t)`; the signals as they are, where they are too short or too slow for the filter.
+    """
+    from scipy.signal import butter, sosfiltfilt
+
+    count = values.shape[-1]
+    if cutoff >= 0.45 / step or count < 20:
+        return values
+    sections = butter(2, cutoff, fs=1 / step, output="sos")
+    return np.asarray(sosfiltfilt(sections, values, padlen=min(count - 1, padding)))
 
 
 def second_derivative(values: np.ndarray, step: float) -> np.ndarray:

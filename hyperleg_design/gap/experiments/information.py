@@ -23,7 +23,8 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.placing import joint_strength, motor_strength
+from hyperleg_design.gap.effects.placing import joint_strength, motor_strengths
+from hyperleg_design.gap.effects.series import low_passed
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 
@@ -124,7 +125,7 @@ def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np
     subject = signals.subject
     scales = {
         "motion": noise * joint_strength(subject),
-        "drive": noise * np.array([motor_strength(subject, m) for m in range(len(subject.motors))]),
+        "drive": noise * motor_strengths(subject),
     }
     scales = {
         residual_name: scale
@@ -155,7 +156,7 @@ def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np
                 )
                 kept = np.where(
                     known[residual_name][::every, row],
-                    _filtered(values, signals.step)[:, ::every],
+                    low_passed(values, signals.step, BAND)[:, ::every],
                     0.0,
                 )
                 rows[residual_name][row, :, blocks.start[at] : blocks.start[at] + len(found)] = (
@@ -193,22 +194,6 @@ def _block(
         slopes = (traces[0 : 2 * count : 2] - traces[1 : 2 * count : 2]) * scale[:, None, None]
         out[residual_name] = np.concatenate([slopes, traces[-1:]])
     return out
-
-
-def _filtered(values: np.ndarray, step: float) -> np.ndarray:
-    """Without what lies above the band, no delay `(k, t)`."""
-    from scipy.signal import butter, sosfiltfilt
-
-    if 0.45 / step <= BAND or values.shape[1] < 20:
-        return values
-    return np.asarray(
-        sosfiltfilt(
-            butter(2, BAND, fs=1 / step, output="sos"),
-            values,
-            axis=1,
-            padlen=min(values.shape[1] - 1, 60),
-        )
-    )
 
 
 def scales_of(one: Effect, location: str, subject: Subject, values: np.ndarray) -> np.ndarray:

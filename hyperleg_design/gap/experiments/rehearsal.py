@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from hyperleg_design.gap.experiments.rig_room import followed
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.rig_spec import rig_spec
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.playback.replay import LONGEST_STEP
@@ -58,11 +58,7 @@ def rehearsed(
     if closed:
         position, velocity, command = closed_loop(subject, step, target, position[0])
     else:
-        velocity = np.gradient(position, step, axis=0)
-        acceleration = np.gradient(velocity, step, axis=0)
-        needed = rigid.inverse_dynamics(
-            subject, position, velocity, acceleration
-        ) + friction.friction_torque(subject, position, velocity)
+        velocity, needed = followed(subject, position, step)
         command = np.asarray(needed @ subject.motor_from_joint.T)
         command[off] = 0.0
     signals: dict[str, np.ndarray] = {}
@@ -78,19 +74,9 @@ def rehearsed(
         )
         if torque:
             signals[f"motor_torque/{motor}"] = command[:, i]
-    gains = {
-        j: (float(k), float(d))
-        for j, (k, d) in zip(subject.joints, subject.gains, strict=True)
-        if np.isfinite(k + d)
-    }
-    return Log(
-        name,
-        time,
-        signals,
-        Metadata(
-            robot=subject.path, base="fixed", gains=gains, notes="rehearsed on the nominal model"
-        ),
-    )
+    notes = "rehearsed on the nominal model"
+    metadata = Metadata(robot=subject.path, base="fixed", gains=subject.known_gains, notes=notes)
+    return Log(name, time, signals, metadata)
 
 
 def swung(subject: Subject, start: np.ndarray, time: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.errors import InfeasibleError
-from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength, motor_strength
+from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength, motor_strengths
 from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.machine import machine_of
 from hyperleg_design.gap.model.subject import Subject
@@ -161,29 +161,24 @@ def rated_torque(subject: Subject) -> np.ndarray:
         The torques [Nm], `(m,)`.
     """
     rated = machine_of(subject).rated_torque
-    peak = np.array([motor_strength(subject, m) for m in range(len(subject.motors))])
-    return np.where(np.isfinite(rated), rated, UNKNOWN_RATED * peak)
+    return np.where(np.isfinite(rated), rated, UNKNOWN_RATED * motor_strengths(subject))
 
 
-def needed_torque(
-    subject: Subject, position: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray
-) -> np.ndarray:
-    """Compute the motor torque that a motion needs, friction included.
+def followed(subject: Subject, position: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Compute the velocity of a motion and the joint torque that it needs, friction included.
 
     Args:
         subject: with its base fixed.
-        position: [rad], `(t, n)`.
-        velocity: [rad/s], `(t, n)`.
-        acceleration: [rad/s^2], `(t, n)`.
+        position: of the motion [rad], `(t, n)`.
+        step: between ticks [s].
 
     Returns:
-        The torque [Nm], `(t, m)`.
+        Velocity [rad/s] and torque [Nm], `(t, n)` each.
     """
-    torque = rigid.inverse_dynamics(
-        subject, position, velocity, acceleration
-    ) + friction.friction_torque(subject, position, velocity)
-    torque = np.where(subject.passive, 0.0, torque)
-    return np.asarray(torque @ subject.motor_from_joint.T)
+    velocity = np.gradient(position, step, axis=0)
+    acceleration = np.gradient(velocity, step, axis=0)
+    needed = rigid.inverse_dynamics(subject, position, velocity, acceleration)
+    return velocity, needed + friction.friction_torque(subject, position, velocity)
 
 
 def targets_for(subject: Subject, position: np.ndarray, step: float) -> np.ndarray:
@@ -200,11 +195,7 @@ def targets_for(subject: Subject, position: np.ndarray, step: float) -> np.ndarr
     Returns:
         The targets [rad], `(t, n)`.
     """
-    velocity = np.gradient(position, step, axis=0)
-    acceleration = np.gradient(velocity, step, axis=0)
-    torque = rigid.inverse_dynamics(
-        subject, position, velocity, acceleration
-    ) + friction.friction_torque(subject, position, velocity)
+    velocity, torque = followed(subject, position, step)
     stiffness, damping = subject.gains.T
     known = np.isfinite(stiffness) & np.isfinite(damping) & (stiffness > 0) & ~subject.passive
     lead = (torque + np.where(known, damping, 0.0) * velocity) / np.where(known, stiffness, 1.0)
@@ -233,11 +224,11 @@ def use_of(
     from hyperleg_design.sizing.envelope import MotorEnvelope, torque_limits
     from hyperleg_design.sizing.thermal import rms_torque
 
-    velocity = np.gradient(position, step, axis=0)
+    velocity, needed = followed(subject, position, step)
     if torque is None:
-        torque = needed_torque(subject, position, velocity, np.gradient(velocity, step, axis=0))
+        torque = np.where(subject.passive, 0.0, needed) @ subject.motor_from_joint.T
     motor_velocity = velocity @ subject.joint_from_motor
-    peak = np.array([motor_strength(subject, m) for m in range(len(subject.motors))])
+    peak = motor_strengths(subject)
     line = np.isfinite(subject.no_load_speed) & np.isfinite(subject.stall_torque)
     far = 1e9
     envelope = MotorEnvelope(

@@ -157,6 +157,20 @@ class Subject:
             return _least_heat(self)
         return np.asarray(np.linalg.pinv(self.joint_from_motor))
 
+    @property
+    def known_gains(self) -> dict[str, tuple[float, float]]:
+        """Stiffness [Nm/rad] and damping [Nms/rad] of the joints whose gains are known, by name."""
+        return {
+            joint: (float(stiffness), float(damping))
+            for joint, (stiffness, damping) in zip(self.joints, self.gains, strict=True)
+            if np.isfinite(stiffness + damping)
+        }
+
+    @cached_property
+    def pad_foot(self) -> np.ndarray:
+        """Index of the foot of each pad `(P,)`."""
+        return np.array([pad.foot for pad in self.pads], int)
+
     @cached_property
     def pinocchio(self) -> pinocchio.Model:
         """Pinocchio model of the same tree, see `mechanism.pinocchio_model`."""

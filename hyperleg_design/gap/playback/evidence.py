@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.effects.series import low_passed
 from hyperleg_design.gap.playback.sheets import root_mean_square
 from hyperleg_design.gap.signals.resting import moving_ticks, sticking
 from hyperleg_design.gap.signals.signals import OF_MOTORS, Signals, row_names
@@ -82,8 +83,8 @@ def evidence(
     known = np.isfinite(residual) & np.isfinite(explained) & signals.valid[:, None]
     if residual_name == "motion":
         known = moving_ticks(signals, known, sticking(signals))
-    before = _smooth(np.where(known, residual, 0.0), signals.step)
-    made = _smooth(np.where(known, explained, 0.0), signals.step)
+    before = low_passed(np.where(known, residual, 0.0).T, signals.step, BAND).T
+    made = low_passed(np.where(known, explained, 0.0).T, signals.step, BAND).T
     speed = np.full(residual.shape, np.nan)
     if residual_name == "motion":
         speed = signals.velocity
@@ -98,20 +99,4 @@ def evidence(
         before + empty,
         made + empty,
         speed,
-    )
-
-
-def _smooth(values: np.ndarray, step: float) -> np.ndarray:
-    """Second-order Butterworth, forwards and backwards."""
-    from scipy.signal import butter, sosfiltfilt
-
-    if 0.45 / step <= BAND or len(values) < 20:
-        return values
-    return np.asarray(
-        sosfiltfilt(
-            butter(2, BAND, fs=1 / step, output="sos"),
-            values,
-            axis=0,
-            padlen=min(len(values) - 1, 60),
-        )
     )

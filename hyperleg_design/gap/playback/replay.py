@@ -23,6 +23,7 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.playback.base_states import base_states
 from hyperleg_design.gap.playback.plant import Plant
 from hyperleg_design.gap.playback.windows import Windows, short_windows
+from hyperleg_design.gap.signals.channels import held
 from hyperleg_design.gap.signals.conditioning import wrong_limits
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
@@ -156,11 +157,8 @@ def _inputs(signals: Signals, follow: str) -> np.ndarray:
         raise InputError(
             signals.log.name, follow, None, f"is not in this log; it has {best_input(signals)}"
         )
-    known = np.isfinite(found)
-    latest = np.maximum.accumulate(np.where(known, np.arange(len(found))[:, None], 0), 0)
-    held = np.take_along_axis(found, latest, 0)
-    at_rest = signals.subject.default if follow == "target" else np.zeros(held.shape[1])
-    return np.where(np.isfinite(held), held, at_rest)
+    at_rest = signals.subject.default if follow == "target" else np.zeros(found.shape[1])
+    return held(found, at_rest)
 
 
 def _run(

@@ -161,13 +161,11 @@ def _log(
         columns[f"motor_temperature/{motor}"] = warmth[:, place]
     if subject.floating:
         columns |= _base_columns(subject, time, found)
-    gains = {
-        j: (float(k), float(d))
-        for j, (k, d) in zip(subject.joints, subject.gains, strict=True)
-        if np.isfinite(k + d)
-    }
     metadata = Metadata(
-        robot=subject.path, base=subject.base, gains=gains, notes="standard motion, simulated"
+        robot=subject.path,
+        base=subject.base,
+        gains=subject.known_gains,
+        notes="standard motion, simulated",
     )
     return Log("standard motion", time, columns, metadata)
 

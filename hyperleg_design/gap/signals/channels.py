@@ -50,6 +50,22 @@ def of_motors(log: Log, kind: str, subject: Subject) -> np.ndarray:
     return own * subject.motor_scale[kind] if kind in subject.motor_scale else own
 
 
+def held(values: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """Hold channels at their last known values.
+
+    Args:
+        values: `(t, k)`, NaN where unknown.
+        start: what holds before a channel is first known, `(k,)`.
+
+    Returns:
+        `(t, k)`.
+    """
+    known = np.isfinite(values)
+    latest = np.maximum.accumulate(np.where(known, np.arange(len(values))[:, None], 0), 0)
+    found = np.take_along_axis(values, latest, 0)
+    return np.where(np.isfinite(found), found, start)
+
+
 def resampled(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray:
     """Interpolate channels to ticks.
 

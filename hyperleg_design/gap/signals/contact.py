@@ -75,7 +75,6 @@ def contacts(
 
     feet, pads = subject.feet, subject.pads
     pad_names = [p.name for p in pads]
-    foot_of_pad = np.array([p.foot for p in pads], int)
     for name in log.feet:
         if name not in feet and name not in pad_names:
             raise InputError(
@@ -104,13 +103,13 @@ def contacts(
         near = _may_touch(subject, position, base)[:, untold, None]
         on_feet[:, untold] = np.where(near, np.nan, 0.0)
     total = np.stack(
-        [np.where(foot_of_pad[:, None] == f, on_pads, 0.0).sum(1) for f in range(len(feet))], 1
+        [np.where(subject.pad_foot[:, None] == f, on_pads, 0.0).sum(1) for f in range(len(feet))], 1
     )
     total = np.where(np.isfinite(total), total, on_feet)
     touching = np.linalg.norm(total, axis=-1) > TOUCHING_FORCE
     touching |= ~np.isfinite(total).all(-1)
     for foot in range(len(feet)):
-        own = np.flatnonzero(foot_of_pad == foot)
+        own = np.flatnonzero(subject.pad_foot == foot)
         missing = ~np.isfinite(on_pads[:, own]).all((1, 2))
         shared = (
             on_feet[:, foot] if len(own) == 1 else np.where(touching[:, foot, None], np.nan, 0.0)
@@ -135,9 +134,10 @@ def unknown_rows(subject: Subject, ground: Ground, margin: int) -> np.ndarray:
         return np.zeros((1, len(subject.joints)), bool)
     unknown = ground.touching
     if ground.pad_force is not None:
-        of_foot = np.array([p.foot for p in subject.pads])
         lost = ~np.isfinite(ground.pad_force).all(-1)
-        unknown = np.stack([lost[:, of_foot == f].any(1) for f in range(len(subject.feet))], 1)
+        unknown = np.stack(
+            [lost[:, subject.pad_foot == f].any(1) for f in range(len(subject.feet))], 1
+        )
     out = np.zeros((len(unknown), len(subject.joints)), bool)
     for foot, chain in enumerate(chains):
         wide = np.convolve(unknown[:, foot], np.ones(2 * margin + 1), "same") > 0.5
@@ -166,8 +166,9 @@ def _may_touch(subject: Subject, position: np.ndarray, base: BaseMotion) -> np.n
     """Feet near the lowest one, by forward kinematics."""
     points = pad_points(subject, position, base.rotation)
     height = np.einsum("ti,tpi->tp", base.rotation[:, 2], points)
-    of_foot = np.array([p.foot for p in subject.pads])
-    lowest = np.stack([height[:, of_foot == f].min(1) for f in range(len(subject.feet))], 1)
+    lowest = np.stack(
+        [height[:, subject.pad_foot == f].min(1) for f in range(len(subject.feet))], 1
+    )
     return np.asarray(lowest < lowest.min(1, keepdims=True) + TOUCHING_HEIGHT)
 
 

@@ -218,10 +218,9 @@ def _footings(signals: Signals) -> tuple[Footing, ...]:
         relative, signals.step, axis=0
     )
     velocity += pads.pad_rolling(subject, signals.position, base.rotation, signals.step)
-    of_foot = np.array([p.foot for p in subject.pads])
     found = []
     for index in range(len(subject.feet)):
-        own = np.flatnonzero(of_foot == index)
+        own = np.flatnonzero(subject.pad_foot == index)
         force = signals.contact[:, index]
         lowest = own[np.argmin(np.nan_to_num(relative[:, own, 2]), 1)]
         weight = _loads(signals, own, lowest)

@@ -22,6 +22,7 @@ import numpy as np
 from hyperleg_design.gap.model.friction import sliding_share
 from hyperleg_design.gap.signals.limit_cycle import PRESLIDING
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.stop_operator import stop
 
 NOISES = 8.0
 """Least z over the noise of the smoothed position."""
@@ -41,23 +42,8 @@ def sliding(signals: Signals) -> np.ndarray:
         -1 .. 1, `(t, n)`.
     """
     if signals not in _SLIDING:
-        position = signals.position
-        moved = np.diff(position, axis=0) / presliding(signals)
-        out = np.empty_like(position)
-        first = np.sign(
-            np.where(
-                np.abs(position - position[0]) > presliding(signals), position - position[0], 0.0
-            )
-        )
-        start = np.argmax(first != 0, 0)
-        state = first[start, np.arange(position.shape[1])]
-        out[0] = state
-        for tick, step in enumerate(moved, 1):
-            state = out[tick]
-            np.add(out[tick - 1], step, out=state)
-            np.minimum(state, 1.0, out=state)
-            np.maximum(state, -1.0, out=state)
-        np.clip(2 * out, -1.0, 1.0, out=out)
+        ways = zip(signals.position.T, presliding(signals).tolist(), strict=True)
+        out = np.clip(2 * np.stack([stop(position, way) for position, way in ways], -1), -1.0, 1.0)
         if signals.limit_cycle is not None:
             swings = shaken(signals)
             out[swings] = sliding_share(

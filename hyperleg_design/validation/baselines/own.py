@@ -24,11 +24,10 @@ import numpy as np
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.series import delayed
 from hyperleg_design.gap.model import rigid
-from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.channels import applied, held
 from hyperleg_design.gap.signals.conditioning import limited_torque
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.validation.baselines.drive_set import KINDS, DriveSet, Fitted, check_logs
-from hyperleg_design.validation.baselines.population import held_targets
 from hyperleg_design.validation.baselines.rollout import Rollout
 
 ROUNDS = 1
@@ -325,7 +324,8 @@ def _late_targets(one: Signals, delay: np.ndarray) -> np.ndarray:
     `(k, t, n)` [Nm].
     """
     assert one.target is not None
-    target = held_targets(one.target, one.subject.default)
+    assert one.target is not None
+    target = held(one.target, one.subject.default)
     now = np.stack([delayed(column, delay, one.step) for column in target.T], -1)
     return np.nan_to_num(one.subject.gains[:, 0]) * ~one.subject.passive * (target - now)
 

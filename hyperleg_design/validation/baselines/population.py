@@ -13,6 +13,7 @@ import numpy as np
 from hyperleg_design.gap.playback.plant import Plant
 from hyperleg_design.gap.playback.replay import LONGEST_STEP
 from hyperleg_design.gap.playback.windows import whole_log
+from hyperleg_design.gap.signals.channels import held
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
@@ -51,8 +52,6 @@ def predicted(
     signals: Signals,
     drives: DriveSet,
     values: np.ndarray,
-    *,
-    time_step: float = LONGEST_STEP,
 ) -> np.ndarray:
     """Joint positions as encoders tell them over the whole log, first to last valid tick.
 
@@ -60,7 +59,6 @@ def predicted(
         signals: conditioned log with targets.
         drives: parameters of the robot.
         values: `(k, P)`.
-        time_step: longest of the simulation [s].
 
     Returns:
         `(k, T, n)` [rad]; NaN after a simulation diverged.
@@ -69,8 +67,9 @@ def predicted(
     values = np.atleast_2d(values)
     window = whole_log(signals)
     ticks = window.ticks[0]
-    target = held_targets(signals.target, subject.default)
-    substeps = max(int(np.ceil(signals.step / time_step - 1e-9)), 1)
+    assert signals.target is not None
+    target = held(signals.target, subject.default)
+    substeps = max(int(np.ceil(signals.step / LONGEST_STEP - 1e-9)), 1)
     step = signals.step / substeps
     friction = drives.part(values, "friction")
     width = np.where(
@@ -128,9 +127,7 @@ def squared_error(signals: Signals, predicted_position: np.ndarray) -> np.ndarra
     return np.where(np.isfinite(mean), mean, np.inf)
 
 
-def position_gap(
-    signals: Sequence[Signals], drives: DriveSet, values: np.ndarray, **options: Any
-) -> np.ndarray:
+def position_gap(signals: Sequence[Signals], drives: DriveSet, values: np.ndarray) -> np.ndarray:
     """Root mean square of the whole-log position error over all logs, by set of values `(k,)`
     [rad].
 
@@ -138,7 +135,6 @@ def position_gap(
         signals: the conditioned logs.
         drives: the parameters.
         values: sets of values `(k, P)`.
-        options: of the replay.
 
     Returns:
         The errors `(k,)` [rad].
@@ -146,23 +142,6 @@ def position_gap(
     total, weight = np.zeros(len(np.atleast_2d(values))), 0.0
     for one in signals:
         length = one.time[-1] - one.time[0]
-        total = total + length * squared_error(one, predicted(one, drives, values, **options))
+        total = total + length * squared_error(one, predicted(one, drives, values))
         weight += length
     return np.asarray(np.sqrt(total / weight))
-
-
-def held_targets(target: np.ndarray | None, default: np.ndarray) -> np.ndarray:
-    """Targets with unknown ticks held at the last known one.
-
-    Args:
-        target: `(t, n)` [rad], NaN where unknown; there must be some.
-        default: what holds before the first one `(n,)` [rad].
-
-    Returns:
-        The targets `(t, n)` [rad].
-    """
-    assert target is not None
-    known = np.isfinite(target)
-    latest = np.maximum.accumulate(np.where(known, np.arange(len(target))[:, None], 0), 0)
-    held = np.take_along_axis(target, latest, 0)
-    return np.where(np.isfinite(held), held, default)

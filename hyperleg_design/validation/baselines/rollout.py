@@ -10,9 +10,9 @@ import numpy as np
 
 from hyperleg_design.gap.model.rig_spec import rig_spec
 from hyperleg_design.gap.playback.windows import whole_log
+from hyperleg_design.gap.signals.channels import held
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.validation.baselines.drive_set import DriveSet
-from hyperleg_design.validation.baselines.population import held_targets
 
 STEP = 0.0025
 """Of the simulation at most [s], PACE's; implicit servos bear more than explicit ones."""
@@ -37,7 +37,8 @@ class Rollout:
         self.data = mujoco.MjData(self.model)
         self.ticks = whole_log(signals).ticks[0]
         self.driven = np.flatnonzero(~subject.passive)
-        self.target = held_targets(signals.target, subject.default)[self.ticks][:, self.driven]
+        assert signals.target is not None
+        self.target = held(signals.target, subject.default)[self.ticks][:, self.driven]
 
     def positions(self, values: np.ndarray) -> np.ndarray:
         """As encoders tell them, from the first valid tick to the last `(T, n)` [rad]; values

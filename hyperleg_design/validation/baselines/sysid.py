@@ -20,9 +20,9 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.model.rig_spec import SENSOR, rig_spec
 from hyperleg_design.gap.playback.windows import whole_log
+from hyperleg_design.gap.signals.channels import held
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.validation.baselines.drive_set import KINDS, DriveSet, Fitted, check_logs
-from hyperleg_design.validation.baselines.population import held_targets
 from hyperleg_design.validation.baselines.rollout import STEP
 
 ITERATIONS = 60
@@ -203,11 +203,12 @@ def _sequence(sysid: Any, signals: Signals, drives: DriveSet, number: int) -> An
     driven = [i for i in range(len(subject.joints)) if not subject.passive[i]]
     # A controller holds a target until the next one: the toolbox interpolates, so each is given
     # twice.
-    held = held_targets(signals.target, subject.default)[ticks][:, driven]
+    assert signals.target is not None
+    kept = held(signals.target, subject.default)[ticks][:, driven]
     edge = 1e-6
     when = np.concatenate([[times[0]], np.stack([times[1:] - edge, times[1:]], -1).ravel()])
     control = np.concatenate(
-        [held[:1], np.stack([held[:-1], held[1:]], 1).reshape(-1, held.shape[1])]
+        [kept[:1], np.stack([kept[:-1], kept[1:]], 1).reshape(-1, kept.shape[1])]
     )
     state = sysid.create_initial_state(
         model, signals.position[ticks[0]], signals.velocity[ticks[0]]

@@ -4,7 +4,7 @@ import pytest
 from hyperleg_design import resources
 from hyperleg_design.errors import InfeasibleError
 from hyperleg_design.gap.experiments.rig_room import (
-    needed_torque,
+    followed,
     rated_torque,
     room_of,
     targets_for,
@@ -58,9 +58,7 @@ def test_a_hold_needs_gravitys_torque_and_uses_that_share_of_the_motor(tmp_path)
     subject = of_text(tmp_path, -120, 120)
     position = np.full((400, 1), 0.7)
     gravity = 0.5 * 9.81 * 0.1 * np.sin(0.7)
-    assert np.abs(needed_torque(subject, position, 0 * position, 0 * position)) == pytest.approx(
-        gravity, rel=1e-9
-    )
+    assert np.abs(followed(subject, position, 0.005)[1]) == pytest.approx(gravity, rel=1e-9)
     use = use_of(subject, room_of(subject), position, 0.005)
     assert use.envelope == pytest.approx(gravity / 2, rel=1e-6)
     assert use.continuous == pytest.approx(gravity / (0.4 * 2), rel=1e-6)
