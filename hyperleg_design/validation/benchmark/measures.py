@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
 from hyperleg_design.validation.benchmark.scoring import CONFIDENT
+from hyperleg_design.validation.wilson import wilson
 
 Row = Mapping[str, Any]
 """One scored case: `name`, `suite`, `split`, `kind`, `truth`, `score`, `seconds`."""
-Z = 1.959964
-"""Of a 95 % interval."""
 FAULTS = ("single", "everywhere", "several")
 
 
@@ -30,26 +28,6 @@ class Measure:
     def interval(self) -> tuple[float, float]:
         """Wilson's 95 % interval of the share; 0 to 1 of no cases."""
         return wilson(self.hits, self.of)
-
-
-def wilson(hits: int, of: int) -> tuple[float, float]:
-    """Wilson's score interval of a share, 95 %.
-
-    Args:
-        hits: cases that have it.
-        of: all cases; of none, the interval is 0 to 1.
-
-    Raises:
-        ValueError: more hits than cases, or a negative number.
-    """
-    if not 0 <= hits <= of:
-        raise ValueError(f"{hits} of {of} is no share")
-    if of == 0:
-        return 0.0, 1.0
-    share, square = hits / of, Z**2 / of
-    middle = (share + square / 2) / (1 + square)
-    half = Z / (1 + square) * math.sqrt(share * (1 - share) / of + square / (4 * of))
-    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 def measures(rows: Sequence[Row]) -> list[Measure]:

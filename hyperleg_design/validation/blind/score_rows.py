@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.validation.blind.view import View
+from hyperleg_design.validation.wilson import wilson
 
 BINS = 5
 """Of equal width, of the stated probability."""
@@ -29,25 +30,6 @@ class Row:
     target: str
     reached: bool | None
     """None where no case speaks of it or no target is set."""
-
-
-def wilson(hits: int, cases: int) -> tuple[float, float]:
-    """Compute the 95 % interval of a share (Wilson, 1927).
-
-    Args:
-        hits: cases that count.
-        cases: all of them, at least one.
-
-    Returns:
-        Lower and upper end.
-    """
-    z = 1.959964
-    share = hits / cases
-    middle = (share + z * z / (2 * cases)) / (1 + z * z / cases)
-    half = (
-        z / (1 + z * z / cases) * np.sqrt(share * (1 - share) / cases + z * z / (4 * cases * cases))
-    )
-    return float(max(middle - half, 0.0)), float(min(middle + half, 1.0))
 
 
 def calibration_error(probability: np.ndarray, right: np.ndarray) -> float:

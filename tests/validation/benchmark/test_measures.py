@@ -1,26 +1,8 @@
-"""Wilson's intervals and the counting of the table."""
+"""The counting of the table."""
 
 from __future__ import annotations
 
-import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from scipy.stats import binomtest
-
-from hyperleg_design.validation.benchmark.measures import case_table, measures, table, wilson
-
-
-@given(st.integers(1, 300).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))
-def test_wilson_agrees_with_scipy(pair):
-    hits, of = pair
-    theirs = binomtest(hits, of).proportion_ci(0.95, "wilson")
-    assert wilson(hits, of) == pytest.approx((theirs.low, theirs.high), abs=1e-6)
-
-
-def test_of_no_case_nothing_is_known_and_impossible_counts_are_refused():
-    assert wilson(0, 0) == (0.0, 1.0)
-    with pytest.raises(ValueError, match="3 of 2"):
-        wilson(3, 2)
+from hyperleg_design.validation.benchmark.measures import case_table, measures, table
 
 
 def row(name, outcome, kind="single", split="development", suite="real", **more):
