@@ -57,14 +57,10 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
     tree = mechanism_of(first)
     coupled = drives.names != tree.joints
     used = np.any(drives.matrix != 0, 0)
+    names = tuple(n for n, u in zip(drives.names, used, strict=True) if u)
+    aliases = tuple(n for n, u in zip(drives.aliases, used, strict=True) if u)
     if coupled:
-        add_rotors(
-            spec,
-            tree.joints,
-            [n for n, u in zip(drives.names, used, strict=True) if u],
-            drives.matrix[:, used],
-            drives.rotor_inertia[used],
-        )
+        add_rotors(spec, tree.joints, names, drives.matrix[:, used], drives.rotor_inertia[used])
     inertia = drives.armature if coupled else drives.rotor_inertia
     for joint in spec.joints:
         if joint.name in tree.joints:
@@ -74,8 +70,6 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
     model = robot_file.compiled(spec, path)
     coulomb, viscous = file_joints.friction(model)
     spring, rest = file_joints.springs(model)
-    names = tuple(n for n, u in zip(drives.names, used, strict=True) if u)
-    aliases = tuple(n for n, u in zip(drives.aliases, used, strict=True) if u)
     unlimited = np.full(len(names), np.inf)
     feet, pads = feet_of(model, tree) if stands else ((), ())
     imu_rotation, imu_position = robot_file.imu_place(model, imu_site)

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 BASE = -1
 """Place of the base (or, of a fixed one, the world) among the joints."""
+MOMENTS = (0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2)
+"""Rows and columns of the six moments of an inertia: xx, xy, yy, xz, yz, zz."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,22 +250,8 @@ def inertial_parameters(mass: float, com: np.ndarray, inertia: np.ndarray) -> np
     Returns:
         Mass, mass times centre of mass, and inertia about the origin, `(10,)`.
     """
-    x, y, z = com
     about = inertia + mass * (com @ com * np.eye(3) - np.outer(com, com))
-    return np.array(
-        [
-            mass,
-            mass * x,
-            mass * y,
-            mass * z,
-            about[0, 0],
-            about[0, 1],
-            about[1, 1],
-            about[0, 2],
-            about[1, 2],
-            about[2, 2],
-        ]
-    )
+    return np.array([mass, *(mass * com), *about[MOMENTS]])
 
 
 def mass_properties(parameters: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
@@ -299,20 +287,7 @@ def moved_inertial(parameters: np.ndarray, rotation: np.ndarray, offset: np.ndar
     mass, com, inertia = mass_properties(parameters)
     if not mass:
         moved = rotation @ _about_origin(parameters) @ rotation.T
-        return np.array(
-            [
-                0,
-                0,
-                0,
-                0,
-                moved[0, 0],
-                moved[0, 1],
-                moved[1, 1],
-                moved[0, 2],
-                moved[1, 2],
-                moved[2, 2],
-            ]
-        )
+        return np.array([0, 0, 0, 0, *moved[MOMENTS]])
     return inertial_parameters(mass, offset + rotation @ com, rotation @ inertia @ rotation.T)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.model.assembling import add_rotors
 from hyperleg_design.gap.model.mechanism import mass_properties
 from hyperleg_design.gap.model.subject import Subject
 
@@ -51,14 +52,7 @@ def rig_spec(subject: Subject, step: float) -> Any:
         body.explicitinertial = True
         body.mass = max(mass, LIGHTEST)
         body.ipos = com
-        body.fullinertia = [
-            inertia[0, 0],
-            inertia[1, 1],
-            inertia[2, 2],
-            inertia[0, 1],
-            inertia[0, 2],
-            inertia[1, 2],
-        ]
+        body.fullinertia = [*np.diag(inertia), inertia[0, 1], inertia[0, 2], inertia[1, 2]]
         kind = mujoco.mjtJoint.mjJNT_HINGE if tree.hinge[i] else mujoco.mjtJoint.mjJNT_SLIDE
         limited = bool(
             np.isfinite(subject.position_low[i]) and np.isfinite(subject.position_high[i])
@@ -85,10 +79,8 @@ def rig_spec(subject: Subject, step: float) -> Any:
             objname=name,
         )
     if not subject.one_to_one:
-        for column, motor in enumerate(subject.motors):
-            tendon = spec.add_tendon(name=motor, armature=float(subject.rotor_inertia[column]))
-            for row in np.flatnonzero(subject.joint_from_motor[:, column]).tolist():
-                tendon.wrap_joint(subject.joints[row], float(subject.joint_from_motor[row, column]))
+        matrix, rotors = subject.joint_from_motor, subject.rotor_inertia
+        add_rotors(spec, subject.joints, subject.motors, matrix, rotors)
     for i, name in enumerate(subject.joints):
         if subject.passive[i]:
             continue
