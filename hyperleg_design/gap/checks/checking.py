@@ -12,6 +12,7 @@ from hyperleg_design.gap.checks.check import Check, check_log
 from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.readers import open_log
 from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.writing import check_output_folder, output_folder, write_json
 
 
@@ -69,8 +70,6 @@ def _subject(log: Log, robot: str, known: dict[str, Subject]) -> Subject | None:
     """The robot as it is described, whatever the log says of it, so that a log of another robot is
     told and not refused.
     """
-    from hyperleg_design.gap.signals.loading import load_subject
-
     name = robot or log.metadata.robot
     if not name:
         return None

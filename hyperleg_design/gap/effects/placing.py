@@ -20,6 +20,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.machine import machine_of
 from hyperleg_design.gap.model.subject import Subject
@@ -355,8 +356,6 @@ def joint_inertia(subject: Subject) -> np.ndarray:
     Returns:
         The inertias `(n,)` [kg m^2].
     """
-    from hyperleg_design.gap.model import rigid
-
     still = np.zeros((len(subject.joints), len(subject.joints)))
     rest = np.broadcast_to(subject.default, still.shape)
     base = _base_at_rest(subject, len(still))
@@ -367,8 +366,6 @@ def joint_inertia(subject: Subject) -> np.ndarray:
 
 
 def _needed(subject: Subject) -> np.ndarray:
-    from hyperleg_design.gap.model import rigid
-
     count = len(subject.joints)
     spread = np.sin(np.outer(np.arange(1, _POSTURES + 1), np.sqrt(np.arange(2, count + 2)))) * 1.5
     still = np.zeros((_POSTURES, count))

@@ -18,6 +18,8 @@ from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength, m
 from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.machine import machine_of
 from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.sizing.envelope import MotorEnvelope, torque_limits
+from hyperleg_design.sizing.thermal import rms_torque
 
 END_SHARE, END_LEAST = 0.08, 0.03
 """Room kept free at each end of a joint's range: share of the range, and least angle [rad];
@@ -221,9 +223,6 @@ def use_of(
     Returns:
         Shares of range, speed, envelope and continuous torque.
     """
-    from hyperleg_design.sizing.envelope import MotorEnvelope, torque_limits
-    from hyperleg_design.sizing.thermal import rms_torque
-
     velocity, needed = followed(subject, position, step)
     if torque is None:
         torque = np.where(subject.passive, 0.0, needed) @ subject.motor_from_joint.T

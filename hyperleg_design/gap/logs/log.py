@@ -40,6 +40,7 @@ from hyperleg_design.gap.logs.columns import CONTACT, MOTOR_SIGNALS, VECTOR_SIGN
 from hyperleg_design.gap.logs.metadata import Metadata, metadata_from_mapping, read_metadata_mapping
 from hyperleg_design.gap.logs.parquet_columns import parquet_columns
 from hyperleg_design.gap.logs.tidy import check_clock, tidied
+from hyperleg_design.writing import write_bytes
 
 SCHEMA_KEY = b"hyperleg"
 """Of the Parquet schema's metadata."""
@@ -231,8 +232,6 @@ def write_log(path: str | os.PathLike[str], log: Log) -> Path:
     """
     import pyarrow
     import pyarrow.parquet
-
-    from hyperleg_design.writing import write_bytes
 
     schema_metadata = {SCHEMA_KEY: json.dumps(log.metadata.mapping(), allow_nan=False).encode()}
     table = pyarrow.table({"t": log.time, **log.signals}).replace_schema_metadata(schema_metadata)

@@ -6,6 +6,7 @@ import numpy as np
 
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.simulation.drives.machine import Machine
+from hyperleg_design.simulation.drives.machine import machine_of as machine_of_design
 from hyperleg_design.simulation.drives.two_mass import LIGHTEST
 
 
@@ -22,8 +23,6 @@ def machine_of(subject: Subject) -> Machine:
     count = len(subject.motors)
     power, rated, voltage = np.zeros(count), np.full(count, np.inf), subject.voltage
     if subject.design is not None:
-        from hyperleg_design.simulation.drives.machine import machine_of as machine_of_design
-
         whole = machine_of_design(subject.design)
         places = [whole.motor(name) for name in subject.motors]
         power, rated, voltage = (

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.model.rigid import inverse_dynamics
 from hyperleg_design.gap.model.subject import Subject
 
 STATES = 5
@@ -34,8 +35,6 @@ def disagreements(subject: Subject, whole: Any) -> tuple[str, ...]:
     Returns:
         One note that names the joints and the largest difference; empty where all agree.
     """
-    from hyperleg_design.gap.model.rigid import inverse_dynamics
-
     position, velocity, acceleration = _states(subject)
     own = inverse_dynamics(subject, position, velocity, acceleration)
     own = own + subject.viscous * velocity + subject.spring * (position - subject.spring_rest)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
+from hyperleg_design.gap.model.mechanism import quaternion_rotation
 
 SMALLEST_MASS = 1e-6
 SMALLEST_INERTIA = 1e-9
@@ -300,8 +301,6 @@ def imu_place(model: Any, site: str) -> tuple[np.ndarray, np.ndarray]:
     """
     import mujoco
 
-    from hyperleg_design.gap.model.mechanism import quaternion_rotation
-
     index = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SITE, site) if site else -1
     if index < 0 or model.body_parentid[model.site_bodyid[index]] != 0:
         return np.eye(3), np.zeros(3)
@@ -354,8 +353,6 @@ def touching_points(model: Any, geom: int) -> tuple[np.ndarray, float]:
         The points in the body's frame [m], `(p, 3)`, and the radius around them [m].
     """
     import mujoco
-
-    from hyperleg_design.gap.model.mechanism import quaternion_rotation
 
     size, kind = model.geom_size[geom], mujoco.mjtGeom(model.geom_type[geom])
     rotation, place = quaternion_rotation(model.geom_quat[geom]), model.geom_pos[geom]

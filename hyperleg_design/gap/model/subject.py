@@ -16,7 +16,10 @@ from hyperleg_design.errors import InputError, meant
 from hyperleg_design.gap.logs.metadata import STANDARD_GRAVITY, Metadata
 from hyperleg_design.gap.model.body_inertia import add_mass
 from hyperleg_design.gap.model.mechanism import Mechanism, mechanism_of, pinocchio_model
-from hyperleg_design.robot.parameters.described import RobotDesign
+from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.robot.parameters.described import RobotDesign, prefixed
+from hyperleg_design.robot.transmission import motor_names
+from hyperleg_design.simulation.drives.actuation import motor_from_joint
 
 if TYPE_CHECKING:
     import mujoco
@@ -275,11 +278,6 @@ def index_of(name: str, names: Sequence[str], field: str, what: str) -> int:
 
 
 def _least_heat(subject: Subject) -> np.ndarray:
-    from hyperleg_design.robot.motors import motor_arrays
-    from hyperleg_design.robot.parameters.described import prefixed
-    from hyperleg_design.robot.transmission import motor_names
-    from hyperleg_design.simulation.drives.actuation import motor_from_joint
-
     design = subject.design
     assert design is not None
     constants = motor_arrays(design).power_constant

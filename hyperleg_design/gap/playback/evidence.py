@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.effects.series import low_passed
 from hyperleg_design.gap.playback.sheets import root_mean_square
 from hyperleg_design.gap.signals.resting import moving_ticks, sticking
@@ -67,8 +68,6 @@ def evidence(
     Returns:
         The residual before and after, and what is explained.
     """
-    from hyperleg_design.gap.effects import effect
-
     residual = signals.residual[residual_name]
     explained = np.zeros_like(residual)
     for cause in causes:

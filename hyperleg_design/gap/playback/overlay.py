@@ -24,6 +24,7 @@ import yaml
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.effects.effect import Change
+from hyperleg_design.gap.model.design_subject import subject_of
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.reading import read_json, read_yaml, short_name
 from hyperleg_design.robot.parameters.described import RobotDesign
@@ -67,9 +68,6 @@ class Overlay:
         Raises:
             InputError: the robot has no such place.
         """
-        from hyperleg_design.gap.model.design_subject import subject_of
-        from hyperleg_design.gap.model.subject import Subject
-
         subject = robot if isinstance(robot, Subject) else subject_of(robot)
         return alterations(self.change, subject)
 

@@ -21,6 +21,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.effect import Change
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.playback.base_states import base_states
+from hyperleg_design.gap.playback.overlay import alterations
 from hyperleg_design.gap.playback.plant import Plant
 from hyperleg_design.gap.playback.windows import Windows, short_windows
 from hyperleg_design.gap.signals.channels import held
@@ -138,8 +139,6 @@ def _alterations(change: Change | Sequence[Alteration], subject: Subject) -> tup
     if not change:
         return ()
     if isinstance(change, dict) or hasattr(change, "items"):
-        from hyperleg_design.gap.playback.overlay import alterations
-
         return alterations(change, subject)  # type: ignore[arg-type]
     return tuple(change)
 

@@ -9,6 +9,9 @@ import numpy as np
 
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.model.machine import machine_of
+from hyperleg_design.gap.model.mechanism import quaternion_rotation
+from hyperleg_design.gap.model.pads import pad_points
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.playback.plant import Plant
 from hyperleg_design.simulation.alteration import Alteration
@@ -108,8 +111,6 @@ def _lift(model: Any, subject: Subject, position: np.ndarray) -> float:
     """How far to lift the base so that the lowest pad touches the floor [m]."""
     import mujoco
 
-    from hyperleg_design.gap.model.pads import pad_points
-
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     rotation = np.zeros(9)
@@ -172,8 +173,6 @@ def _log(
 
 def _conditions(subject: Subject, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Made-up temperature of the motors `(t, m)` [degC] and voltage of the battery `(t,)` [V]."""
-    from hyperleg_design.gap.model.machine import machine_of
-
     nominal, progress = machine_of(subject).voltage, time / time[-1]
     warmth = np.tile((COLD + (HOT - COLD) * progress)[:, None], (1, len(subject.motors)))
     return warmth, (nominal if np.isfinite(nominal) else NOMINAL_VOLTAGE) * (
@@ -184,8 +183,6 @@ def _conditions(subject: Subject, time: np.ndarray) -> tuple[np.ndarray, np.ndar
 def _base_columns(
     subject: Subject, time: np.ndarray, found: dict[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
-    from hyperleg_design.gap.model.mechanism import quaternion_rotation
-
     pose, moving = found["pose"], found["base_velocity"]
     rotation = quaternion_rotation(pose[:, 3:7])
     acceleration = np.gradient(moving[:, :3], time, axis=0) - subject.gravity

@@ -14,6 +14,7 @@ from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.pads import pad_points
 from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.channels import resampled
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -71,8 +72,6 @@ def contacts(
     Raises:
         InputError: a force on a foot that the robot does not have.
     """
-    from hyperleg_design.gap.signals.channels import resampled
-
     feet, pads = subject.feet, subject.pads
     pad_names = [p.name for p in pads]
     for name in log.feet:

@@ -17,6 +17,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import of_motors, resampled
+from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.signals import Signals
 
 KINDS = ("motor_torque", "motor_torque_command", "motor_current", "motor_velocity")
@@ -62,8 +63,6 @@ def on_the_joints_side(subject: Subject, logs: Sequence[Log]) -> Subject:
 
 
 def _conditioned(log: Log, subject: Subject) -> Signals | None:
-    from hyperleg_design.gap.signals.conditioning import condition
-
     try:
         return condition(log, subject)
     except InputError:  # whoever conditions it next says why

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.sliding import presliding, shaken
 
 LEAST_MOVING = 0.08
 """Share of known ticks in which a joint moves from which its rest is left out."""
@@ -115,8 +116,6 @@ def sticking(signals: Signals, underway: float = UNDERWAY) -> np.ndarray:
         `(t, n)`.
     """
     from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
-
-    from hyperleg_design.gap.signals.sliding import presliding, shaken
 
     span = max(round(STILL / signals.step), 2)
     moved = maximum_filter1d(signals.position, span, axis=0) - minimum_filter1d(

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.model import robot_file
 from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.simulation.model import simulation_spec
 
 WIDTH, TALLEST, LOWEST = 460.0, 300.0, 150.0
 """Width of the drawing, and its largest and least height; a page scales it."""
@@ -125,9 +127,6 @@ def shapes_of(subject: Subject) -> Shapes:
 
 def _drawn_model(subject: Subject) -> Any:
     from pathlib import Path
-
-    from hyperleg_design.gap.model import robot_file
-    from hyperleg_design.simulation.model import simulation_spec
 
     if subject.design is not None:
         return simulation_spec(subject.design).compile()

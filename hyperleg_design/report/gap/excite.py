@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.effects import LOOK_ALIKES
+from hyperleg_design.gap.effects import EFFECTS, LOOK_ALIKES
 from hyperleg_design.gap.experiments import information as info
 from hyperleg_design.gap.experiments.designed_experiment import (
     CLEAR,
@@ -17,6 +17,7 @@ from hyperleg_design.gap.experiments.designed_experiment import (
     hidden,
     inseparable,
 )
+from hyperleg_design.gap.experiments.pair import apart
 from hyperleg_design.report.style import figure_style, save
 from hyperleg_design.writing import write_text
 
@@ -123,8 +124,6 @@ def _pair_rows(
     """How far each kind of pair is told apart, at the worst of the joints at which both show by all
     motions together.
     """
-    from hyperleg_design.gap.experiments.pair import apart
-
     whole, blocks = experiment.gram(), experiment.blocks
     rows = []
     for first, second, _ in LOOK_ALIKES:
@@ -142,8 +141,6 @@ def _pair_rows(
 
 
 def _deviation_lines(experiment: Experiment) -> list[str]:
-    from hyperleg_design.gap.effects import EFFECTS
-
     blocks, gram = experiment.blocks, experiment.gram(experiment.chosen)
     lines = []
     for effect in dict.fromkeys(place[0] for place in blocks.places):

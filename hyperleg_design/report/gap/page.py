@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design import provenance
+from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.playback.evidence import Evidence, evidence
 from hyperleg_design.gap.playback.sheets import root_mean_square
 from hyperleg_design.gap.signals.signals import Signals
@@ -137,8 +138,6 @@ def _about(diagnosis: Mapping[str, Any], signals: Sequence[Signals]) -> str:
 
 def _telling_residual(signals: Sequence[Signals], causes: Sequence[Mapping[str, Any]]) -> str:
     """The residual in which the first cause shows; motion without one."""
-    from hyperleg_design.gap.effects import effect
-
     for cause in causes[:1]:
         kind = effect(str(cause["effect"]))
         for one in signals[:1]:

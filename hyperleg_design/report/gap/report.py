@@ -9,6 +9,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from hyperleg_design.gap.checks.intake import open_logs
+from hyperleg_design.gap.experiments.excite import excite
+from hyperleg_design.gap.pipeline.diagnose import diagnose, subjects
+from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.report.gap.excite import plan_text, write_report
+from hyperleg_design.report.gap.page import write_gap_page
 from hyperleg_design.writing import check_output_folder, output_folder, write_json
 
 MOST_SHOWN = 3
@@ -47,11 +53,6 @@ def diagnose_to_folder(
         InputError: logs or robot that cannot be used.
         OutputError: the folder cannot be written.
     """
-    from hyperleg_design.gap.checks.intake import open_logs
-    from hyperleg_design.gap.pipeline.diagnose import diagnose, subjects
-    from hyperleg_design.gap.signals.conditioning import condition
-    from hyperleg_design.report.gap.page import write_gap_page
-
     check_output_folder(out)
     tests, healthy = open_logs(sources, references)
     diagnosis = diagnose(
@@ -86,9 +87,6 @@ def excite_to_folder(robot: str, out: str | os.PathLike[str], **options: Any) ->
         InfeasibleError: no motion fits into the robot's limits.
         OutputError: the folder cannot be written.
     """
-    from hyperleg_design.gap.experiments.excite import excite
-    from hyperleg_design.report.gap.excite import plan_text, write_report
-
     check_output_folder(out)
     with output_folder(out) as folder:
         experiment = excite(robot, folder, **options)

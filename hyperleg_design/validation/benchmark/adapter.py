@@ -16,6 +16,7 @@ from typing import Any
 
 import hyperleg_design
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.logs.readers import open_log
 from hyperleg_design.validation.benchmark.case import Recording
 from hyperleg_design.validation.spread import ONE_THREAD
 
@@ -62,8 +63,6 @@ def open_recordings(path: Path, metadata: Mapping[str, Any] | None = None) -> tu
     Raises:
         InputError: unreadable.
     """
-    from hyperleg_design.gap.logs.readers import open_log
-
     return tuple(
         Recording(log.name, log.time, dict(log.signals), log.metadata.mapping())
         for log in open_log(path, metadata=metadata)

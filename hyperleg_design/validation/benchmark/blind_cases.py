@@ -9,6 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
+from hyperleg_design.validation.blind.case import describe
+from hyperleg_design.validation.blind.plan import plan_cases
+from hyperleg_design.validation.blind.rig_case import rig_case
+from hyperleg_design.validation.blind.walking_case import walking_case
 
 SEED, COUNT = 20261201, 24
 """Of the trial; never of one that is scored for itself."""
@@ -20,8 +24,6 @@ VISIBLE = 2.0
 
 @cache
 def _plans() -> tuple[Any, ...]:
-    from hyperleg_design.validation.blind.plan import plan_cases
-
     return tuple(plan_cases(COUNT, SEED))
 
 
@@ -48,10 +50,6 @@ def material(data: Path, index: int) -> tuple[Material, Truth]:
         data: of the real logs; none are used.
         index: of the case in the trial.
     """
-    from hyperleg_design.validation.blind.case import describe
-    from hyperleg_design.validation.blind.rig_case import rig_case
-    from hyperleg_design.validation.blind.walking_case import walking_case
-
     plan = _plans()[index]
     case = walking_case(plan) if plan.plant == "walking" else rig_case(plan)
     told = describe(case)

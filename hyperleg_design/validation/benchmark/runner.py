@@ -19,6 +19,7 @@ from typing import Any
 from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.reading import read_json
 from hyperleg_design.validation.benchmark.adapter import FAILED, checked_checkout, diagnose_folder
+from hyperleg_design.validation.benchmark.blind_cases import blind_cases
 from hyperleg_design.validation.benchmark.case import (
     SPLITS,
     SUITES,
@@ -29,6 +30,10 @@ from hyperleg_design.validation.benchmark.case import (
 )
 from hyperleg_design.validation.benchmark.measures import case_table, table
 from hyperleg_design.validation.benchmark.scoring import VERSION, score
+from hyperleg_design.validation.newcomers.cases import newcomer_cases
+from hyperleg_design.validation.newcomers.crane_cases import crane_cases
+from hyperleg_design.validation.newcomers.quadruped_cases import quadruped_cases
+from hyperleg_design.validation.real.cases import real_cases
 from hyperleg_design.validation.spread import spread
 from hyperleg_design.writing import MARKER, check_output_folder, write_json, write_text
 
@@ -56,12 +61,6 @@ class Outcome:
 
 def all_cases() -> list[Case]:
     """Every case of this version."""
-    from hyperleg_design.validation.benchmark.blind_cases import blind_cases
-    from hyperleg_design.validation.newcomers.cases import newcomer_cases
-    from hyperleg_design.validation.newcomers.crane_cases import crane_cases
-    from hyperleg_design.validation.newcomers.quadruped_cases import quadruped_cases
-    from hyperleg_design.validation.real.cases import real_cases
-
     cases = [
         *real_cases(),
         *newcomer_cases(),

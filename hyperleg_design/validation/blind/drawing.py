@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hyperleg_design.validation.blind.robots.chain import Chain
+from hyperleg_design.validation.blind.truth import KIND
 from hyperleg_design.validation.blind.wrong import Wrong
 
 SIGNED = (
@@ -33,8 +34,6 @@ def draw(robot: Chain, effect: str, rng: np.random.Generator, taken: Sequence[st
     Returns:
         What is wrong.
     """
-    from hyperleg_design.validation.blind.truth import KIND
-
     kind = KIND[effect]
     motors = robot.joints if robot.diagonal else robot.motors
     names: Sequence[str] = {

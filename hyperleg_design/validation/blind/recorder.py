@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.validation.blind.robots.chain import Chain
 
 TORQUES = ("motor_current", "motor_torque", "motor_torque_command", "none")
@@ -128,9 +129,6 @@ def record(
         name: of the log.
         metadata: of the log, in place of what the robot gives.
     """
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.logs.metadata import Metadata
-
     rows = recorder.rows(len(targets), trace.time, rng)
     keep, at = rows.keep, rows.at
 

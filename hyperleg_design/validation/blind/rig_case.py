@@ -26,6 +26,7 @@ from hyperleg_design.validation.blind.recorder import Recorder, record
 from hyperleg_design.validation.blind.residual import multiple, residual
 from hyperleg_design.validation.blind.robots.catalogue import chain
 from hyperleg_design.validation.blind.robots.chain import Chain
+from hyperleg_design.validation.blind.truth import parameters, places
 from hyperleg_design.validation.blind.wrong import SIZES, Wrong
 
 PROBE = 5.0
@@ -54,8 +55,6 @@ def rig_case(plan: Plan) -> Case:
     Returns:
         The case.
     """
-    from hyperleg_design.validation.blind.truth import parameters, places
-
     rng = np.random.default_rng([*plan.seed, 2])
     robot = chain(plan.robot)
     if plan.plant == "other" and not robot.diagonal:

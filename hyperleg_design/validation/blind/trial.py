@@ -27,7 +27,12 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design.errors import HyperlegError, InputError, OutputError
+from hyperleg_design.gap.logs.log import read_log, write_log
+from hyperleg_design.gap.pipeline.diagnose import diagnose as own_diagnosis
+from hyperleg_design.validation.blind.case import describe
 from hyperleg_design.validation.blind.plan import PLANTS, Plan, plan_cases
+from hyperleg_design.validation.blind.rig_case import rig_case
+from hyperleg_design.validation.blind.walking_case import walking_case
 from hyperleg_design.validation.spread import ONE_THREAD, spread
 from hyperleg_design.writing import check_output_folder, write_bytes, write_json
 
@@ -239,11 +244,6 @@ def _name(plan: Plan) -> str:
 
 
 def _make_one(plan: Plan, making: str) -> str:
-    from hyperleg_design.gap.logs.log import write_log
-    from hyperleg_design.validation.blind.case import describe
-    from hyperleg_design.validation.blind.rig_case import rig_case
-    from hyperleg_design.validation.blind.walking_case import walking_case
-
     case = walking_case(plan) if plan.plant == "walking" else rig_case(plan)
     name = _name(plan)
     folder, place = Path(making) / CASES / f".{name}", Path(making) / CASES / name
@@ -269,7 +269,7 @@ def diagnose_trial(
     seed: int = 0,
     workers: int = 1,
     progress: bool = False,
-    diagnose: Callable[..., Any] | None = None,
+    diagnose: Callable[..., Any] = own_diagnosis,
 ) -> int:
     """Diagnose every case that has no diagnosis yet; a stopped run goes on.
 
@@ -304,13 +304,7 @@ def diagnose_trial(
     return len(waiting)
 
 
-def _diagnose_one(case: str, out: str, seed: int, diagnose: Callable[..., Any] | None) -> None:
-    from hyperleg_design.gap.logs.log import read_log
-
-    if diagnose is None:
-        from hyperleg_design.gap.pipeline.diagnose import diagnose as own
-
-        diagnose = own
+def _diagnose_one(case: str, out: str, seed: int, diagnose: Callable[..., Any]) -> None:
     entry = json.loads((Path(case) / "case.json").read_text())
     robot = Path(case) / entry["robot"]
     begun = time.perf_counter()

@@ -18,6 +18,7 @@ from hyperleg_design.validation.blind.plants.stand import Stand
 from hyperleg_design.validation.blind.rig_case import size_at
 from hyperleg_design.validation.blind.robots.catalogue import chain
 from hyperleg_design.validation.blind.robots.chain import Chain
+from hyperleg_design.validation.blind.truth import parameters, places
 from hyperleg_design.validation.blind.walker import BASE, Floor, Walker
 from hyperleg_design.validation.blind.walking_residual import shown
 from hyperleg_design.validation.blind.wrong import SIZES, WALKING_ONLY, Size, Wrong
@@ -50,8 +51,6 @@ def walking_case(plan: Plan) -> Case:
     Returns:
         The case.
     """
-    from hyperleg_design.validation.blind.truth import parameters, places
-
     rng = np.random.default_rng([*plan.seed, 3])
     robot = chain("hyperleg")
     life = of_robot(robot, rng)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.validation.blind.plants.walking import WalkingPlant, WalkingTrace, pad_names
 from hyperleg_design.validation.blind.recorder import Recorder, gains_of
 from hyperleg_design.validation.blind.robots.chain import Chain
@@ -43,9 +44,6 @@ def walking_log(
     Returns:
         The log.
     """
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.logs.metadata import Metadata
-
     rows = recorder.rows(len(trace.targets), trace.time, rng)
     keep = rows.keep
     signals: dict[str, np.ndarray] = {}

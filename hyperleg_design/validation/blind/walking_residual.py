@@ -9,6 +9,9 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.mjcf import mujoco_model
+from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.validation.blind.plants.walking import pad_names
 from hyperleg_design.validation.blind.residual import CUTOFF, EDGE, SLOW, SOFT, multiple
 from hyperleg_design.validation.blind.robots.chain import Chain
@@ -56,10 +59,6 @@ def shown(effect: str, with_effect: Sequence[Log], clean: Sequence[Log], robot: 
 @cache
 def _nominal() -> tuple[Any, list[tuple[str, str, np.ndarray]]]:
     """Pinocchio model with a free base, and the pads: name, link and place in the link `(3,)`."""
-    from hyperleg_design.robot.design import load_design
-    from hyperleg_design.robot.mjcf import mujoco_model
-    from hyperleg_design.robot.models import rigid_body_model
-
     design = load_design("hyperleg")
     model = mujoco_model(design)
     pads = [

@@ -9,8 +9,6 @@ import pytest
 
 from hyperleg_design.validation.benchmark import blind_cases
 from hyperleg_design.validation.benchmark.case import KINDS
-from hyperleg_design.validation.blind import case as blind_case
-from hyperleg_design.validation.blind import rig_case
 
 
 @pytest.fixture(scope="module")
@@ -50,8 +48,8 @@ def test_a_case_tells_its_truth_and_gives_its_files(monkeypatch):
     wrongs = [wrong | {"multiple": 2.5}, wrong | {"multiple": 1.5}]
 
     monkeypatch.setattr(blind_cases, "_plans", lambda: [SimpleNamespace(plant="rig")])
-    monkeypatch.setattr(rig_case, "rig_case", lambda plan: case)
-    monkeypatch.setattr(blind_case, "describe", lambda case: {"wrongs": wrongs})
+    monkeypatch.setattr(blind_cases, "rig_case", lambda plan: case)
+    monkeypatch.setattr(blind_cases, "describe", lambda case: {"wrongs": wrongs})
     material, truth = blind_cases.material(None, 0)
     assert material.robot == "<mujoco/>"
     assert (len(material.logs), len(material.references)) == (2, 1)

@@ -13,10 +13,16 @@ from typing import Any
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.log import Log, read_log
 from hyperleg_design.gap.logs.metadata import metadata_from_mapping
+from hyperleg_design.gap.logs.readers.bam import is_bam, read_bam
+from hyperleg_design.gap.logs.readers.lerobot import is_lerobot, read_lerobot
+from hyperleg_design.gap.logs.readers.mcap import MAGIC
+from hyperleg_design.gap.logs.readers.pace import read_pace
+from hyperleg_design.gap.logs.readers.rosbag import SQLITE, is_bag, read_bag
+from hyperleg_design.gap.logs.readers.sage import is_sage, read_sage
+from hyperleg_design.gap.logs.readers.table import read_csv
 
 FORMATS = "Parquet, CSV, PACE .pt, BAM JSON, SAGE folder, LeRobot dataset, MCAP or ROS 2 bag"
 """What can be opened."""
-_SQLITE, _MCAP = b"SQLite format 3\0", b"\x89MCAP0\r\n"
 _TEXTS = (".csv", ".tsv", ".txt")
 
 
@@ -57,33 +63,19 @@ def open_log(
     if magic.startswith(b"PAR1") or path.suffix.lower() == ".parquet":
         return [_overruled(read_log(path), metadata)]
     if magic.startswith(b"PK\x03\x04"):
-        from hyperleg_design.gap.logs.readers.pace import read_pace
-
         return read_pace(path, metadata)
-    if magic.startswith((_SQLITE, _MCAP)):
-        from hyperleg_design.gap.logs.readers.rosbag import read_bag
-
+    if magic.startswith((SQLITE, MAGIC)):
         return read_bag(path, metadata)
     if magic.lstrip(b"\xef\xbb\xbf \t\r\n").startswith((b"{", b"[")):
-        from hyperleg_design.gap.logs.readers.bam import read_bam
-
         return read_bam(path, metadata)
     if magic.startswith((b"type,timestamp,positions",)):
-        from hyperleg_design.gap.logs.readers.sage import read_sage
-
         return read_sage(path, metadata)
     if b"\0" in magic:
         raise InputError(path.name, "", None, f"is of no known format: expects {FORMATS}")
-    from hyperleg_design.gap.logs.readers.table import read_csv
-
     return read_csv(path, metadata, mapping)
 
 
 def _open_folder(path: Path, metadata: Mapping[str, Any] | None) -> list[Log]:
-    from hyperleg_design.gap.logs.readers.lerobot import is_lerobot, read_lerobot
-    from hyperleg_design.gap.logs.readers.rosbag import is_bag, read_bag
-    from hyperleg_design.gap.logs.readers.sage import is_sage, read_sage
-
     for fits, read in ((is_sage, read_sage), (is_lerobot, read_lerobot), (is_bag, read_bag)):
         if fits(path):
             return read(path, metadata)
@@ -105,8 +97,6 @@ def _open_folder(path: Path, metadata: Mapping[str, Any] | None) -> list[Log]:
 
 
 def _is_bam(path: Path) -> bool:
-    from hyperleg_design.gap.logs.readers.bam import is_bam
-
     if path.suffix.lower() != ".json":
         return False
     try:

@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.mjcf import FLOOR, mujoco_spec
 from hyperleg_design.validation.blind.plants.plant import RigPlant
 from hyperleg_design.validation.blind.plants.rig import BRISTLE_DAMPING
 from hyperleg_design.validation.blind.plants.stand import AHEAD, Stand
@@ -102,9 +104,6 @@ def walking_model(
         The compiled model.
     """
     import mujoco
-
-    from hyperleg_design.robot.design import load_design
-    from hyperleg_design.robot.mjcf import FLOOR, mujoco_spec
 
     spec = mujoco_spec(load_design(chain.name), friction=False)
     spec.option.timestep = STEP

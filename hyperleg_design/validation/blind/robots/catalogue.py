@@ -11,6 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.robot import transmission
+from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.mjcf import mujoco_spec
+from hyperleg_design.robot.motors import motor_arrays
+from hyperleg_design.robot.names import SIDES
 from hyperleg_design.validation.blind.robots.chain import Chain
 from hyperleg_design.validation.blind.robots.tree_links import tree_links
 
@@ -132,12 +137,6 @@ def chain(name: str) -> Chain:
 
 
 def _design(name: str) -> Chain:
-    from hyperleg_design.robot import transmission
-    from hyperleg_design.robot.design import load_design
-    from hyperleg_design.robot.mjcf import mujoco_spec
-    from hyperleg_design.robot.motors import motor_arrays
-    from hyperleg_design.robot.names import SIDES
-
     design = load_design(name)
     model = mujoco_spec(design, floor=False).compile()
     links = tree_links(model)
