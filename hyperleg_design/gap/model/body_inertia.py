@@ -36,12 +36,10 @@ def add_inertia(model: Any, body: str, added: np.ndarray) -> None:
         vectors[:, 0] *= -1
     quaternion = np.zeros(4)
     mujoco.mju_mat2Quat(quaternion, vectors.ravel())
-    (
-        model.body_mass[index],
-        model.body_ipos[index],
-        model.body_inertia[index],
-        model.body_iquat[index],
-    ) = mass, com, values, quaternion
+    model.body_mass[index] = mass
+    model.body_ipos[index] = com
+    model.body_inertia[index] = values
+    model.body_iquat[index] = quaternion
     model.body_simple[index] = model.body_sameframe[index] = 0  # what the compiler took for granted
 
 

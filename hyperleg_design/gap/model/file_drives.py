@@ -58,10 +58,8 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
     import mujoco
 
     single = [j for j in single_joints(model) if _name(model, j) in kept]
-    joints, dofs = (
-        tuple(_name(model, j) for j in single),
-        np.array([model.jnt_dofadr[j] for j in single]),
-    )
+    joints = tuple(_name(model, j) for j in single)
+    dofs = np.array([model.jnt_dofadr[j] for j in single])
     count = len(joints)
     notes: list[str] = []
     moment = _moment(model)

@@ -25,11 +25,9 @@ def machine_of(subject: Subject) -> Machine:
     if subject.design is not None:
         whole = machine_of_design(subject.design)
         places = [whole.motor(name) for name in subject.motors]
-        power, rated, voltage = (
-            whole.power_constant[places],
-            whole.rated_torque[places],
-            whole.voltage,
-        )
+        power = whole.power_constant[places]
+        rated = whole.rated_torque[places]
+        voltage = whole.voltage
     return Machine(
         joints=subject.joints,
         motors=subject.motors,

@@ -89,10 +89,8 @@ def rig_spec(subject: Subject, step: float) -> Any:
         servo.gaintype, servo.biastype = mujoco.mjtGain.mjGAIN_FIXED, mujoco.mjtBias.mjBIAS_AFFINE
         servo.gainprm[0], servo.biasprm[1], servo.biasprm[2] = stiffness, -stiffness, -damping
         if subject.one_to_one and np.isfinite(subject.torque_limit[i]):
-            servo.forcelimited, servo.forcerange = (
-                True,
-                [-float(subject.torque_limit[i]), float(subject.torque_limit[i])],
-            )
+            servo.forcelimited = True
+            servo.forcerange = [-float(subject.torque_limit[i]), float(subject.torque_limit[i])]
     return spec
 
 

@@ -208,11 +208,9 @@ def _declared(bare: Subject, metadata: Metadata) -> Subject:
         gains[index_of(joint, bare.joints, "gains", "joint")] = pair
     for motor, value in metadata.torque_constant.items():
         constant[motor_index(bare, motor, "torque_constant")] = value
-    supply, stall, free = (
-        np.array(bare.supply),
-        np.array(bare.stall_torque),
-        np.array(bare.no_load_speed),
-    )
+    supply = np.array(bare.supply)
+    stall = np.array(bare.stall_torque)
+    free = np.array(bare.no_load_speed)
     for motor, line in metadata.supply.items():
         index = motor_index(bare, motor, "supply")
         supply[index], stall[index], free[index] = line

@@ -29,10 +29,8 @@ def base_states(
     base, subject = signals.base, signals.subject
     assert base is not None
     rotation = base.rotation[ticks]
-    place, velocity = (
-        base.position[ticks].copy(),
-        np.einsum("tij,tj->ti", rotation, base.linear_velocity[ticks]),
-    )
+    place = base.position[ticks].copy()
+    velocity = np.einsum("tij,tj->ti", rotation, base.linear_velocity[ticks])
     if not np.isfinite(place).all():
         points = np.einsum(
             "tij,tpj->tpi", rotation, pad_points(subject, signals.position[ticks], rotation)

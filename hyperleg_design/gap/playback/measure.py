@@ -164,11 +164,9 @@ def _rows(group: Sequence[Sheet], floors: dict[tuple[str, str, str], np.ndarray]
     rows: list[tuple[int, Row]] = []
     for regime in regime_names(group):
         values = np.concatenate([regime_values(s, regime) for s in group])
-        gap, floor, ticks = (
-            root_mean_square(values),
-            np.nan_to_num(floors.get((*key, regime), default)),
-            np.isfinite(values).sum(0),
-        )
+        gap = root_mean_square(values)
+        floor = np.nan_to_num(floors.get((*key, regime), default))
+        ticks = np.isfinite(values).sum(0)
         if regime not in {n for s in group for n in s.bands}:
             squared = np.maximum(np.nan_to_num(gap) ** 2 - floor**2, 0.0) * ticks
         else:

@@ -147,11 +147,9 @@ def overlay_from_mapping(content: Mapping[str, Any], where: str) -> Overlay:
             content.get("schema"),
             f"expects {SCHEMA}; another version of hyperleg wrote this file",
         )
-    entries, source, robot = (
-        content.get("effects"),
-        content.get("source") or {},
-        content.get("robot", ""),
-    )
+    entries = content.get("effects")
+    source = content.get("source") or {}
+    robot = content.get("robot", "")
     if not isinstance(entries, list):
         raise InputError(where, "effects", entries, "expects a list of effects")
     if not isinstance(source, dict):

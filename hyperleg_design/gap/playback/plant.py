@@ -133,10 +133,8 @@ class Plant:
                 fixed one.
         """
         told, told_velocity = self.chain.measured(position, velocity)
-        self.qpos[:, self.joints], self.qvel[:, self._first :] = (
-            2 * position - told,
-            2 * velocity - told_velocity,
-        )
+        self.qpos[:, self.joints] = 2 * position - told
+        self.qvel[:, self._first :] = 2 * velocity - told_velocity
         if base is not None and base_velocity is not None:
             self.qpos[:, :7], self.qvel[:, :6] = base, base_velocity
         self.chain.reset(

@@ -50,10 +50,8 @@ def regimes_of(
         regimes["low posture"], regimes["high posture"] = _halves(position)
     if signals.voltage is not None and np.ptp(signals.voltage[np.isfinite(signals.voltage)]) > 0:
         low, high = _halves(signals.voltage[:, None])
-        regimes["low voltage"], regimes["high voltage"] = (
-            np.broadcast_to(low, shape),
-            np.broadcast_to(high, shape),
-        )
+        regimes["low voltage"] = np.broadcast_to(low, shape)
+        regimes["high voltage"] = np.broadcast_to(high, shape)
     if signals.touching is not None and kind == "joint":
         stance, known = _stance(signals, names)
         regimes["stance"], regimes["swing"] = stance & known, ~stance & known

@@ -188,14 +188,10 @@ def _run(
     )
     joints, motors = len(subject.joints), len(subject.motors)
     change = np.zeros((count, joints))
-    position, velocity = (
-        np.full((count, length, joints), np.nan),
-        np.full((count, length, joints), np.nan),
-    )
-    torque, pose = (
-        np.full((count, length, motors), np.nan),
-        np.full((count, length, 7 if subject.floating else 0), np.nan),
-    )
+    position = np.full((count, length, joints), np.nan)
+    velocity = np.full((count, length, joints), np.nan)
+    torque = np.full((count, length, motors), np.nan)
+    pose = np.full((count, length, 7 if subject.floating else 0), np.nan)
     for k in range(length):
         position[:, k], velocity[:, k] = plant.measured()
         pose[:, k] = plant.qpos[:, : pose.shape[-1]]

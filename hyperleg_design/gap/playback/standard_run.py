@@ -151,10 +151,8 @@ def _log(
 ) -> Log:
     columns: dict[str, np.ndarray] = {}
     for place, joint in enumerate(subject.joints):
-        columns[f"position/{joint}"], columns[f"velocity/{joint}"] = (
-            found["position"][:, place],
-            found["velocity"][:, place],
-        )
+        columns[f"position/{joint}"] = found["position"][:, place]
+        columns[f"velocity/{joint}"] = found["velocity"][:, place]
         columns[f"position_target/{joint}"] = target[:, place]
     warmth, columns["battery_voltage"] = _conditions(subject, time)
     for place, motor in enumerate(subject.motors):

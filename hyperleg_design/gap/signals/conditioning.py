@@ -278,10 +278,8 @@ def _command(
         derived = np.stack([np.interp(log.time, ticks, v) for v in motion.first.T], -1)
         speed = np.where(np.isfinite(speed), speed, derived)
         stiffness, damping = subject.gains.T
-        spring, damper = (
-            stiffness * (raw_target - log.stack("position", subject.joints)),
-            -damping * speed,
-        )
+        spring = stiffness * (raw_target - log.stack("position", subject.joints))
+        damper = -damping * speed
         spring[:, subject.passive] = damper[:, subject.passive] = 0.0
         if np.isfinite(logged).any():
             residual, others = control_residual(subject, logged, spring, damper)

@@ -103,11 +103,9 @@ class Footing:
 
     def _floor(self, spring: float, damper: float) -> float:
         """Height at which the floor bears the mean of the logged forces [m]."""
-        mean, height, sink = (
-            float(self.force[self.judged, 2].mean()),
-            self.height[self.judged],
-            self.sink[self.judged],
-        )
+        mean = float(self.force[self.judged, 2].mean())
+        height = self.height[self.judged]
+        sink = self.sink[self.judged]
         low, high = float(height.min()), float(height.max()) + 0.1
         for _ in range(HALVINGS):
             # bisection, as a higher floor bears more

@@ -192,10 +192,8 @@ def nominal_ground(subject: Subject, links: tuple[str, ...]) -> tuple[float, Law
         impedance = model.geom_solimp[geom].copy()
         impedance[:2] = np.clip(impedance[:2], 1e-4, 0.9999)
         impedance[2] = max(impedance[2], 1e-9)
-        most, weight = (
-            impedance[1],
-            max(float(model.body_invweight0[model.geom_bodyid[geom], 0]), 1e-9),
-        )
+        most = impedance[1]
+        weight = max(float(model.body_invweight0[model.geom_bodyid[geom], 0]), 1e-9)
         if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL and dimensions > 1:
             weight *= (
                 float(friction[0]) ** 2 * (1 + float(friction[0]) ** 2) / (2 * model.opt.impratio)

@@ -244,12 +244,10 @@ def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: in
         top = int(np.argmax(likelihood))
         if likelihood[top] > best:
             beyond = 1.0 if steeper == 0 else BEYOND
-            best, found = (
-                float(likelihood[top]),
-                Noise(
-                    float(np.sqrt(level[top])),
-                    min(beyond * float(crossovers[top]), float(crossovers[-1])),
-                ),
+            best = float(likelihood[top])
+            found = Noise(
+                float(np.sqrt(level[top])),
+                min(beyond * float(crossovers[top]), float(crossovers[-1])),
             )
     return found
 

@@ -144,10 +144,8 @@ def record(
 
     put("position_target", chain.joints, targets)
     put("position", chain.joints, noisy(at(trace.encoder), recorder.position_noise))
-    speed, drive = (
-        noisy(at(trace.speed), recorder.velocity_noise),
-        noisy(at(trace.drive_torque), recorder.torque_noise * chain.peak_torque),
-    )
+    speed = noisy(at(trace.speed), recorder.velocity_noise)
+    drive = noisy(at(trace.drive_torque), recorder.torque_noise * chain.peak_torque)
     if recorder.velocity:
         put("velocity", chain.joints, speed)
     if recorder.torque == "motor_current":

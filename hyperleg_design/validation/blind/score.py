@@ -70,11 +70,11 @@ class Score:
             "|---|---|---|---|---|---|",
         ]
         for row in self.rows:
-            value, interval = (
-                _shown(row.value),
+            value = _shown(row.value)
+            interval = (
                 "-"
                 if row.low is None or row.high is None
-                else f"{_shown(row.low)} .. {_shown(row.high)}",
+                else f"{_shown(row.low)} .. {_shown(row.high)}"
             )
             lines.append(
                 f"| {row.measure} | {value} | {interval} | {row.cases} | {row.target} | "

@@ -90,10 +90,8 @@ def calibration_row(views: Sequence[View]) -> Row:
     measure, aim = "expected calibration error of the stated probability", "<= 0.05"
     if not stated:
         return Row(measure, None, None, None, 0, aim, None)
-    probability, right = (
-        np.array([p for p, _ in stated], float),
-        np.array([r for _, r in stated], float),
-    )
+    probability = np.array([p for p, _ in stated], float)
+    right = np.array([r for _, r in stated], float)
     value = calibration_error(probability, right)
     low, high = _bootstrap(
         len(stated), lambda rows: calibration_error(probability[rows], right[rows])

@@ -72,10 +72,8 @@ class Walker:
             elif w.effect == "periodic_push":
                 push, frequency = 400.0 * w.size * np.array([0.5, 1.0, 0.0]), w.shape["frequency"]
             elif w.effect == "imu_bias":
-                gyro, accelerometer = (
-                    w.shape["gyro"] * w.size * axis,
-                    (1 - w.shape["gyro"]) * 10.0 * w.size * axis,
-                )
+                gyro = w.shape["gyro"] * w.size * axis
+                accelerometer = (1 - w.shape["gyro"]) * 10.0 * w.size * axis
             elif w.effect == "ground_friction":
                 friction *= 1.0 - w.size
             elif w.effect == "ground_compliance":
@@ -152,11 +150,9 @@ def _hang(model: Any, mass: float, place: np.ndarray) -> None:
     import mujoco
 
     body = model.body(BASE).id
-    own, com, axes = (
-        float(model.body_mass[body]),
-        model.body_ipos[body].copy(),
-        matrix(model.body_iquat[body]),
-    )
+    own = float(model.body_mass[body])
+    com = model.body_ipos[body].copy()
+    axes = matrix(model.body_iquat[body])
     total = own + mass
     middle = (own * com + mass * place) / total
     inertia = (
@@ -169,10 +165,8 @@ def _hang(model: Any, mass: float, place: np.ndarray) -> None:
         turned[:, 0] *= -1
     quaternion = np.empty(4)
     mujoco.mju_mat2Quat(quaternion, turned.ravel())
-    (
-        model.body_mass[body],
-        model.body_ipos[body],
-        model.body_inertia[body],
-        model.body_iquat[body],
-    ) = total, middle, values, quaternion
+    model.body_mass[body] = total
+    model.body_ipos[body] = middle
+    model.body_inertia[body] = values
+    model.body_iquat[body] = quaternion
     mujoco.mj_setConst(model, mujoco.MjData(model))

@@ -45,10 +45,8 @@ def shown(effect: str, with_effect: Sequence[Log], clean: Sequence[Log], robot: 
                 ]
                 levels.append(np.sqrt(np.mean(np.concatenate(gaps) ** 2)) / noise / 3.0)
         return float(max(levels))
-    ours, theirs = (
-        [walking_residual(w, robot) for w in with_effect],
-        [walking_residual(c, robot) for c in clean],
-    )
+    ours = [walking_residual(w, robot) for w in with_effect]
+    theirs = [walking_residual(c, robot) for c in clean]
     lengths = [min(len(a), len(b)) for a, b in zip(ours, theirs, strict=True)]
     return multiple(
         [a[:k] for a, k in zip(ours, lengths, strict=True)],
@@ -93,16 +91,12 @@ def walking_residual(log: Log, robot: Chain) -> np.ndarray:
         return np.asarray(sosfiltfilt(sos, values, axis=0))
 
     raw = even("position", robot.joints)
-    position, turning, force = (
-        smooth(raw),
-        smooth(even("gyro", "xyz")),
-        smooth(even("accelerometer", "xyz")),
-    )
+    position = smooth(raw)
+    turning = smooth(even("gyro", "xyz"))
+    force = smooth(even("accelerometer", "xyz"))
     velocity = smooth(np.gradient(position, step, axis=0))
-    acceleration, spin = (
-        smooth(np.gradient(velocity, step, axis=0)),
-        np.gradient(turning, step, axis=0),
-    )
+    acceleration = smooth(np.gradient(velocity, step, axis=0))
+    spin = np.gradient(turning, step, axis=0)
     quaternion = smooth(even("base_orientation", "wxyz"))
     measured = even("motor_torque", robot.motors)
     loads = smooth(even("contact_force", [f"{p}_{a}" for p, *_ in pads for a in "xyz"])).reshape(

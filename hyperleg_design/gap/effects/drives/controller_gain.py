@@ -95,10 +95,8 @@ class ControllerGain(JointEffect):
         scale = np.atleast_2d(np.asarray(values, float))[..., None] - 1.0
         stiffness, damping = subject.gains[joint]
         error = signals.target[:, joint] - signals.position[:, joint]
-        spring, damper = (
-            scale[:, 0] * (stiffness * error),
-            scale[:, 1] * (damping * signals.sensed[:, joint]),
-        )
+        spring = scale[:, 0] * (stiffness * error)
+        damper = scale[:, 1] * (damping * signals.sensed[:, joint])
         changes, control = {}, None
         for motor in np.flatnonzero(subject.motor_from_joint[:, joint]).tolist():
             if subject.motors[motor] not in driven_motors(subject) or not is_commanded(

@@ -166,10 +166,8 @@ class _Scaled(Live):
         shape = np.broadcast_shapes(
             np.shape(limits.peak_torque), (self.count, len(self.machine.motors))
         )
-        stall, peak = (
-            np.array(np.broadcast_to(limits.stall_torque, shape)),
-            np.array(np.broadcast_to(limits.peak_torque, shape)),
-        )
+        stall = np.array(np.broadcast_to(limits.stall_torque, shape))
+        peak = np.array(np.broadcast_to(limits.peak_torque, shape))
         stall[:, self.place] /= self.read
         peak[:, self.place] /= self.read
         return Limits(limits.no_load_speed, stall, peak)

@@ -150,8 +150,6 @@ class ChangedGround(Alteration):
             else:
                 solref = solref * np.array([1 / compliance, damping / np.sqrt(compliance)])
             model.geom_friction[geom] = mixed * np.array([friction, 1.0, 1.0])
-            model.geom_solref[geom], model.geom_condim[geom], model.geom_priority[geom] = (
-                solref,
-                dimensions,
-                max(top + 1, int(model.geom_priority[geom])),
-            )
+            model.geom_solref[geom] = solref
+            model.geom_condim[geom] = dimensions
+            model.geom_priority[geom] = max(top + 1, int(model.geom_priority[geom]))

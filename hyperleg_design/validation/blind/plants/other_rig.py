@@ -71,11 +71,9 @@ def simulate_other(
     transposed = np.ascontiguousarray(np.swapaxes(matrix, 1, 2))
     allot = np.ascontiguousarray(np.stack([np.linalg.pinv(p.declared).T for p in plants]))
     inertia = of("rotor_inertia")
-    stiff, damp, play = (
-        BELT_STIFFNESS * of("belt_stiffness"),
-        BELT_DAMPING * of("belt_damping"),
-        of("backlash") / 2,
-    )
+    stiff = BELT_STIFFNESS * of("belt_stiffness")
+    damp = BELT_DAMPING * of("belt_damping")
+    play = of("backlash") / 2
     soft_limit = STIFFENING * np.abs(matrix).max(1)
     mobility = np.stack(
         [
@@ -87,12 +85,10 @@ def simulate_other(
     # log.
     stiff = np.minimum(stiff, (0.45 / h) ** 2 / mobility)
     damp = np.minimum(damp, 0.25 / (h * mobility))
-    coulomb, static, stribeck, viscous = (
-        of("coulomb"),
-        of("static"),
-        of("stribeck_speed"),
-        of("viscous"),
-    )
+    coulomb = of("coulomb")
+    static = of("static")
+    stribeck = of("stribeck_speed")
+    viscous = of("viscous")
     load = of("load_friction")
     if not coupled:  # gear friction acts before the gear
         gear = np.abs(np.diagonal(matrix, axis1=1, axis2=2))
@@ -111,30 +107,22 @@ def simulate_other(
         or of("patch").any()
     )
     spring, spring_rest, rest = of("spring"), of("spring_rest"), of("rest")
-    cogging, order, phase, ripple = (
-        of("cogging"),
-        of("cogging_order"),
-        of("cogging_phase"),
-        of("ripple"),
-    )
-    scale, derating, peak, stall = (
-        of("torque_scale"),
-        of("derating"),
-        of("peak_torque"),
-        of("stall_torque"),
-    )
+    cogging = of("cogging")
+    order = of("cogging_order")
+    phase = of("cogging_phase")
+    ripple = of("ripple")
+    scale = of("torque_scale")
+    derating = of("derating")
+    peak = of("peak_torque")
+    stall = of("stall_torque")
     droop = stall / of("no_load_speed")
-    nominal, supply, resistance = (
-        of("voltage")[:, None],
-        of("supply")[:, None],
-        of("supply_resistance")[:, None],
-    )
-    heat, thermal_resistance, thermal_time, temperature = (
-        of("power_constant"),
-        of("thermal_resistance"),
-        of("thermal_time"),
-        of("start_temperature"),
-    )
+    nominal = of("voltage")[:, None]
+    supply = of("supply")[:, None]
+    resistance = of("supply_resistance")[:, None]
+    heat = of("power_constant")
+    thermal_resistance = of("thermal_resistance")
+    thermal_time = of("thermal_time")
+    temperature = of("start_temperature")
     late = of("delay") / control
     whole = np.floor(late).astype(int)
     part = late - whole
@@ -144,13 +132,11 @@ def simulate_other(
     ratio = np.abs(declared).max(1)
     counts = of("resolution").min(-1, keepdims=True) * ratio / np.where(ratio > 1, 12, 2)
     patch, patch_middle, hysteresis = of("patch"), of("patch_middle"), of("hysteresis")
-    push, beat, hardening, coupling, drag = (
-        of("push"),
-        of("push_frequency")[:, None],
-        of("hardening"),
-        of("coupling"),
-        of("drag"),
-    )
+    push = of("push")
+    beat = of("push_frequency")[:, None]
+    hardening = of("hardening")
+    coupling = of("coupling")
+    drag = of("drag")
     from_rotor = np.ascontiguousarray(np.linalg.pinv(declared))  # (b, m, n): q^T = theta^T pinv(M)
     loss = of("loss")
     dice = [np.random.default_rng([seed, 1]) for seed in seeds]
@@ -159,12 +145,10 @@ def simulate_other(
 
     q, qd = targets[:, 0] - offset, np.zeros((b, n))
     rotor = (q[:, None] @ matrix)[:, 0]
-    spin, torque, wanted, given = (
-        np.zeros((b, m)),
-        np.zeros((b, m)),
-        np.zeros((b, m)),
-        np.zeros((b, m)),
-    )
+    spin = np.zeros((b, m))
+    torque = np.zeros((b, m))
+    wanted = np.zeros((b, m))
+    given = np.zeros((b, m))
     held, memory = np.zeros((b, n)), np.zeros((b, n))
     history, angles = np.zeros((_HISTORY, b, m)), None
     seen = np.zeros((DIFFERENCED + 1, b, n))

@@ -75,16 +75,12 @@ def simulate(
     cogging, order, phase = stack("cogging"), stack("cogging_order"), stack("cogging_phase")
     scale, derating = stack("torque_scale"), stack("derating")
     peak, stall, fastest = stack("peak_torque"), stack("stall_torque"), stack("no_load_speed")
-    nominal, supply, resistance = (
-        stack("voltage")[:, None],
-        stack("supply")[:, None],
-        stack("supply_resistance")[:, None],
-    )
-    heat, thermal_resistance, thermal_time = (
-        stack("power_constant"),
-        stack("thermal_resistance"),
-        stack("thermal_time"),
-    )
+    nominal = stack("voltage")[:, None]
+    supply = stack("supply")[:, None]
+    resistance = stack("supply_resistance")[:, None]
+    heat = stack("power_constant")
+    thermal_resistance = stack("thermal_resistance")
+    thermal_time = stack("thermal_time")
     temperature = stack("start_temperature")
     delay = stack("delay") / control
     whole = np.floor(delay).astype(int)
@@ -93,18 +89,14 @@ def simulate(
     kp, kd = stack("stiffness"), stack("damping")
     offset, resolution, drift = stack("offset"), stack("resolution"), stack("drift")
     smooth = -np.expm1(-2 * np.pi * stack("velocity_bandwidth")[:, None] * control)
-    ripple, patch, patch_middle, hysteresis = (
-        stack("ripple"),
-        stack("patch"),
-        stack("patch_middle"),
-        stack("hysteresis"),
-    )
-    push, beat, hardening, coupling = (
-        stack("push"),
-        stack("push_frequency")[:, None],
-        stack("hardening"),
-        stack("coupling"),
-    )
+    ripple = stack("ripple")
+    patch = stack("patch")
+    patch_middle = stack("patch_middle")
+    hysteresis = stack("hysteresis")
+    push = stack("push")
+    beat = stack("push_frequency")[:, None]
+    hardening = stack("hardening")
+    coupling = stack("coupling")
     drag, eccentricity, rest = stack("drag"), stack("eccentricity"), stack("rest")
     lost = _lost(stack("loss"), lead + count, control, seeds)
 

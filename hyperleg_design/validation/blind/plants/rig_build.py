@@ -263,10 +263,8 @@ def _ripple(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> Non
 
 
 def _patch(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["patch"][at.joint], v["patch_middle"][at.joint] = (
-        w.size * at.peak,
-        at.chain.rest[at.joint] + w.shape["shift"],
-    )
+    v["patch"][at.joint] = w.size * at.peak
+    v["patch_middle"][at.joint] = at.chain.rest[at.joint] + w.shape["shift"]
 
 
 def _hysteresis(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:

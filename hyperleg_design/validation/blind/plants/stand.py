@@ -70,10 +70,8 @@ class Stand:
         sway = self.sway * wave[1]
         legs = []
         for side, out in zip(sides, (1.0, -1.0), strict=True):
-            yaw, apart = (
-                self.twist * wave[2] + self.turn * out * wave[4],
-                self.spread * out * wave[4],
-            )
+            yaw = self.twist * wave[2] + self.turn * out * wave[4]
+            apart = self.spread * out * wave[4]
             level = -side[2] * (sway - 0.5 * roll - 0.04 * roll_rate)
             legs.append(
                 [side[0] * yaw, side[1] * (sway + apart), -hip + self.lean, knee, ankle, level, 0.0]

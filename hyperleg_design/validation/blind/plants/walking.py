@@ -125,11 +125,9 @@ def walking_model(
         values, axes = np.linalg.eigh(link.inertia)
         if np.linalg.det(axes) < 0:
             axes[:, 0] *= -1
-        model.body_mass[body], model.body_ipos[body], model.body_inertia[body] = (
-            link.mass,
-            link.com,
-            values,
-        )
+        model.body_mass[body] = link.mass
+        model.body_ipos[body] = link.com
+        model.body_inertia[body] = values
         quaternion = np.empty(4)
         mujoco.mju_mat2Quat(quaternion, axes.ravel())
         model.body_iquat[body] = quaternion
@@ -231,16 +229,14 @@ def simulate_walking(
                 data.xpos[ankles[0], 0] + data.xpos[ankles[1], 0]
             )
             mujoco.mj_subtreeVel(model, data)
-            previous, fresh_target = (
-                fresh_target,
-                stand.targets(
-                    row / rate,
-                    ahead,
-                    data.subtree_linvel[root, 0],
-                    _roll(data.qpos[3:7]),
-                    data.qvel[3],
-                    sides,
-                ),
+            previous = fresh_target
+            fresh_target = stand.targets(
+                row / rate,
+                ahead,
+                data.subtree_linvel[root, 0],
+                _roll(data.qpos[3:7]),
+                data.qvel[3],
+                sides,
             )
             if tick >= 0:
                 targets[row] = previous
@@ -264,16 +260,12 @@ def simulate_walking(
         thrust = max(np.sin(2 * np.pi * p.push_frequency * tick * control), 0.0) ** 6
         data.xfrc_applied[root, :3] = plant.push * thrust
         if tick >= 0:
-            kept["encoder"][tick], kept["speed"][tick], kept["motor_velocity"][tick] = (
-                encoder,
-                speed,
-                spin,
-            )
-            kept["command"][tick], kept["drive_torque"][tick], kept["temperature"][tick] = (
-                fresh,
-                current,
-                p.start_temperature,
-            )
+            kept["encoder"][tick] = encoder
+            kept["speed"][tick] = speed
+            kept["motor_velocity"][tick] = spin
+            kept["command"][tick] = fresh
+            kept["drive_torque"][tick] = current
+            kept["temperature"][tick] = p.start_temperature
             kept["base"][tick, :7], kept["base"][tick, 7:] = data.qpos[:7], data.qvel[:3]
             kept["gyro"][tick] = data.sensordata[gyro : gyro + 3] + plant.gyro_bias
             kept["accelerometer"][tick] = (
