@@ -217,11 +217,7 @@ class Compare(Printing):
         ]
         measures = comparison.compare(designs, demand=self.demand)
         walks = comparison.compare_walks(
-            designs,
-            self.evaluate,
-            seeds=self.seeds,
-            policies=self.policies,
-            swap=self.swap,
+            designs, self.evaluate, seeds=self.seeds, policies=self.policies, swap=self.swap
         )
         for protocol, entries in walks.items():
             for entry, walked in zip(measures.values(), entries, strict=True):

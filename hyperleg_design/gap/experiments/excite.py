@@ -18,10 +18,7 @@ import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
 from hyperleg_design.gap.experiments import information as info
-from hyperleg_design.gap.experiments.designed_experiment import (
-    CLEAR,
-    Experiment,
-)
+from hyperleg_design.gap.experiments.designed_experiment import CLEAR, Experiment
 from hyperleg_design.gap.experiments.information import Blocks
 from hyperleg_design.gap.experiments.motions import Motion, recommended
 from hyperleg_design.gap.experiments.pair import Pair, apart, pairs_of

@@ -50,21 +50,13 @@ EXPERIMENTS: tuple[Experiment, ...] = (
         "repeat the motion with motor torques or currents logged beside the targets",
         3,
     ),
-    Experiment(
-        "several amplitudes",
-        "repeat one motion at a quarter, half and full amplitude",
-        3,
-    ),
+    Experiment("several amplitudes", "repeat one motion at a quarter, half and full amplitude", 3),
     Experiment(
         "slow ramp",
         "move the joint to and fro at several constant speeds, the slowest below 0.05 rad/s",
         3,
     ),
-    Experiment(
-        "chirp past 8 Hz",
-        "sweep the joint from 0.2 to 15 Hz at small amplitude",
-        2,
-    ),
+    Experiment("chirp past 8 Hz", "sweep the joint from 0.2 to 15 Hz at small amplitude", 2),
     Experiment(
         "several postures",
         "hold, and move slowly between, a dozen postures spread over the range of motion",
@@ -109,9 +101,7 @@ EXPERIMENTS: tuple[Experiment, ...] = (
         6,
     ),
     Experiment(
-        "rest level",
-        "let the robot stand or lie still on a level table for ten seconds",
-        1,
+        "rest level", "let the robot stand or lie still on a level table for ten seconds", 1
     ),
     Experiment(
         "push on the ground",

@@ -123,10 +123,7 @@ def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np
         The information, `(c, c)`.
     """
     subject = signals.subject
-    scales = {
-        "motion": noise * joint_strength(subject),
-        "drive": noise * motor_strengths(subject),
-    }
+    scales = {"motion": noise * joint_strength(subject), "drive": noise * motor_strengths(subject)}
     scales = {
         residual_name: scale
         for residual_name, scale in scales.items()

@@ -53,11 +53,7 @@ def assembled(
     if unlogged:
         still = f"joints in no log, held still where the model draws them: {', '.join(unlogged)}"
         notes = (*notes, still)
-    optional = {
-        "gear": np.ones(motors),
-        "spring": np.zeros(count),
-        "spring_rest": np.zeros(count),
-    }
+    optional = {"gear": np.ones(motors), "spring": np.zeros(count), "spring_rest": np.zeros(count)}
     subject = Subject(
         path=str(path),
         gravity=np.array(model.opt.gravity),

@@ -118,10 +118,7 @@ class Gap:
 
 
 def measure(
-    signals: Sequence[Signals],
-    reference: Sequence[Signals] = (),
-    *,
-    predict: bool = True,
+    signals: Sequence[Signals], reference: Sequence[Signals] = (), *, predict: bool = True
 ) -> Gap:
     """Measure the gap of logs, in every signal that they allow.
 

@@ -14,10 +14,7 @@ REVERSAL = 0.1
 
 
 def regimes_of(
-    signals: Signals,
-    kind: str,
-    names: tuple[str, ...],
-    load: np.ndarray | None,
+    signals: Signals, kind: str, names: tuple[str, ...], load: np.ndarray | None
 ) -> dict[str, np.ndarray]:
     """Find what each joint, motor or foot does at each tick.
 

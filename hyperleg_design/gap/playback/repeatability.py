@@ -6,12 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from hyperleg_design.gap.playback.sheets import (
-    Sheet,
-    regime_names,
-    regime_values,
-    root_mean_square,
-)
+from hyperleg_design.gap.playback.sheets import Sheet, regime_names, regime_values, root_mean_square
 from hyperleg_design.gap.signals.signals import Signals
 
 SAME_TARGET = 0.002

@@ -172,11 +172,7 @@ def _spectrum(residual: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray
 
 
 def _band(
-    spectrum: np.ndarray,
-    frequency: np.ndarray,
-    low: float,
-    top: float,
-    residual: np.ndarray,
+    spectrum: np.ndarray, frequency: np.ndarray, low: float, top: float, residual: np.ndarray
 ) -> np.ndarray:
     """Part of a residual in a band, unknown where the residual is."""
     inside = (frequency >= low) & (frequency < top)

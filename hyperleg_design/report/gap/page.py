@@ -310,10 +310,7 @@ def _words(identifier: Any) -> str:
 def _not_judged(diagnosis: Mapping[str, Any]) -> Details | None:
     """Effects of which the logs say nothing."""
     rows = [
-        [
-            capital(named(entry)),
-            plain(entry.get("reason", entry.get("why", ""))),
-        ]
+        [capital(named(entry)), plain(entry.get("reason", entry.get("why", "")))]
         for entry in diagnosis.get("not_judged", ())
     ]
     if not rows:

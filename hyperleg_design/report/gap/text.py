@@ -210,10 +210,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     """
     gap = diagnosis["gap"]
     size = f"residuals [{gap['unit']}]: {gap['before']:.4g}"
-    lines = [
-        f"verdict: {diagnosis['verdict']}",
-        f"{size}, of which noise {gap['floor']:.4g}",
-    ]
+    lines = [f"verdict: {diagnosis['verdict']}", f"{size}, of which noise {gap['floor']:.4g}"]
     if diagnosis["causes"]:
         low, high = (100 * float(v) for v in gap["closed_interval"])
         lines[1] = (

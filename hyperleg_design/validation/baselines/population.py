@@ -48,11 +48,7 @@ class _Drives(Live):
 Drives.live = _Drives
 
 
-def predicted(
-    signals: Signals,
-    drives: DriveSet,
-    values: np.ndarray,
-) -> np.ndarray:
+def predicted(signals: Signals, drives: DriveSet, values: np.ndarray) -> np.ndarray:
     """Joint positions as encoders tell them over the whole log, first to last valid tick.
 
     Args:

@@ -92,12 +92,7 @@ def diagnose_folder(
     command = [sys.executable, "-P", str(WORKER), str(case), str(out)]
     try:
         run = subprocess.run(
-            command,
-            cwd=case,
-            env=environment,
-            capture_output=True,
-            timeout=longest,
-            check=False,
+            command, cwd=case, env=environment, capture_output=True, timeout=longest, check=False
         )
     except subprocess.TimeoutExpired:
         return {"verdict": FAILED, "message": f"took more than {longest:g} s"}, longest

@@ -20,14 +20,7 @@ from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.reading import read_json
 from hyperleg_design.validation.benchmark.adapter import FAILED, checked_checkout, diagnose_folder
 from hyperleg_design.validation.benchmark.blind_cases import blind_cases
-from hyperleg_design.validation.benchmark.case import (
-    SPLITS,
-    SUITES,
-    Case,
-    Fault,
-    Truth,
-    write_case,
-)
+from hyperleg_design.validation.benchmark.case import SPLITS, SUITES, Case, Fault, Truth, write_case
 from hyperleg_design.validation.benchmark.measures import case_table, table
 from hyperleg_design.validation.benchmark.scoring import VERSION, score
 from hyperleg_design.validation.newcomers.cases import newcomer_cases
@@ -61,13 +54,7 @@ class Outcome:
 
 def all_cases() -> list[Case]:
     """Every case of this version."""
-    cases = [
-        *real_cases(),
-        *newcomer_cases(),
-        *crane_cases(),
-        *quadruped_cases(),
-        *blind_cases(),
-    ]
+    cases = [*real_cases(), *newcomer_cases(), *crane_cases(), *quadruped_cases(), *blind_cases()]
     names = [case.name for case in cases]
     assert len(set(names)) == len(names), "names of cases are unique"
     return cases

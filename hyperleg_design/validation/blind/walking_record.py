@@ -70,9 +70,5 @@ def walking_log(
     length = np.sqrt(sum(signals[f"base_orientation/{a}"] ** 2 for a in "wxyz"))
     for a in "wxyz":
         signals[f"base_orientation/{a}"] = signals[f"base_orientation/{a}"] / length
-    known: dict[str, Any] = {
-        "robot": robot.robot,
-        "base": "floating",
-        "gains": gains_of(robot),
-    }
+    known: dict[str, Any] = {"robot": robot.robot, "base": "floating", "gains": gains_of(robot)}
     return Log(name, rows.written[keep], signals, Metadata(**{**known, **metadata}))

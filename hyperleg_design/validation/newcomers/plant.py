@@ -73,11 +73,7 @@ def motion(robot: Robot, rng: np.random.Generator) -> np.ndarray:
     columns = []
     for middle, swing in zip(robot.middle, robot.swing, strict=True):
         wave = np.full_like(clock, middle)
-        for (low, high), share in (
-            ((0.12, 0.25), 0.5),
-            ((0.4, 0.8), 0.35),
-            ((1.2, 2.2), 0.1),
-        ):
+        for (low, high), share in (((0.12, 0.25), 0.5), ((0.4, 0.8), 0.35), ((1.2, 2.2), 0.1)):
             frequency, phase = rng.uniform(low, high), rng.uniform(0, 2 * np.pi)
             wave += swing * share * np.sin(2 * np.pi * frequency * clock + phase)
         pause = clock % 5 > 4.2

@@ -16,19 +16,11 @@ import pandas as pd
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
-from hyperleg_design.validation.real.a0_model import (
-    JOINTS,
-    TIP_MASS,
-    DoublePendulum,
-    read_model,
-)
+from hyperleg_design.validation.real.a0_model import JOINTS, TIP_MASS, DoublePendulum, read_model
 
 FOLDER = "double_pendulum_a0"
 MODEL = "model_2.0.yml"
-WINDOWS = {
-    "swing_up/pendubot_1": (0.0, 4.0),
-    "swing_up/pendubot_2": (0.0, 4.0),
-}
+WINDOWS = {"swing_up/pendubot_1": (0.0, 4.0), "swing_up/pendubot_2": (0.0, 4.0)}
 """Part of a recording that is used [s]: the swing-up without the balancing after it, whose
 controller flips between its limits from tick to tick."""
 COMMAND, MEASURED, VELOCITY = "motor_torque_command", "motor_torque", "velocity"
@@ -114,11 +106,7 @@ def compensation(folder: Path, name: str) -> np.ndarray:
 
 
 def material(
-    data: Path,
-    tests: tuple[str, ...],
-    references: tuple[str, ...],
-    channels: str,
-    fault: str,
+    data: Path, tests: tuple[str, ...], references: tuple[str, ...], channels: str, fault: str
 ) -> tuple[Material, Truth]:
     """The files of one case and its truth.
 

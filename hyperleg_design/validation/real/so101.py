@@ -17,14 +17,7 @@ from hyperleg_design.validation.benchmark.case import (
 )
 
 FOLDER = "so101_arm"
-JOINTS = (
-    "shoulder_pan",
-    "shoulder_lift",
-    "elbow_flex",
-    "wrist_flex",
-    "wrist_roll",
-    "gripper",
-)
+JOINTS = ("shoulder_pan", "shoulder_lift", "elbow_flex", "wrist_flex", "wrist_roll", "gripper")
 """In the description, in the order of the logs."""
 HAND = ("gripper_link", "wrist_roll", "moving_jaw_so101_v1_link", "gripper")
 WRONG: dict[str, tuple[str, float, Fault | None]] = {
@@ -39,11 +32,7 @@ WRONG: dict[str, tuple[str, float, Fault | None]] = {
         0.5,
         Fault("controller_gain", ("elbow_flex",), {"stiffness_scale": 2.0}),
     ),
-    "load_declared": (
-        "load",
-        0.3,
-        Fault("payload", HAND, {"mass": -0.3}, (("link_mass", HAND),)),
-    ),
+    "load_declared": ("load", 0.3, Fault("payload", HAND, {"mass": -0.3}, (("link_mass", HAND),))),
 }
 """What is declared wrongly, how much, and the truth that follows."""
 TESTS, REFERENCES = ("step_response", "triangle_wave"), ("chirp_sweep", "friction_gravity")

@@ -13,12 +13,7 @@ from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
 from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.effects.placing import (
-    before_measurement,
-    commanded,
-    is_commanded,
-    limited,
-)
+from hyperleg_design.gap.effects.placing import before_measurement, commanded, is_commanded, limited
 from hyperleg_design.gap.effects.series import lagged
 from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.gap.logs.log import Log

@@ -13,11 +13,7 @@ from hyperleg_design.gap.effects.excitation import SLOW, Excitation, Motion, at_
 from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.kinds import MotorTorque
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.effects.placing import (
-    motor_position,
-    motor_strength,
-    motor_velocity,
-)
+from hyperleg_design.gap.effects.placing import motor_position, motor_strength, motor_velocity
 from hyperleg_design.gap.effects.waves import fitted_waves, peaks
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
@@ -73,7 +69,7 @@ class Cogging(MotorTorque):
         ),
     )
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "slow ramp": FRICTION | {"encoder_offset", "joint_spring"},
+        "slow ramp": FRICTION | {"encoder_offset", "joint_spring"}
     }
 
     @override

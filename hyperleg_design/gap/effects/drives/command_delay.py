@@ -60,7 +60,7 @@ class CommandDelay(Effect):
         "chirp past 8 Hz": frozenset({"actuator_bandwidth", "controller_gain", "viscous_friction"}),
     }
     look_alikes: ClassVar[Mapping[str, str]] = {
-        "actuator_bandwidth": "gain and phase at high frequency",
+        "actuator_bandwidth": "gain and phase at high frequency"
     }
 
     @override

@@ -65,9 +65,7 @@ class ControllerGain(JointEffect):
         "torque-off swing": WITHOUT_DRIVE,
         "known payload": WITH_LOAD,
     }
-    look_alikes: ClassVar[Mapping[str, str]] = {
-        "torque_saturation": "several amplitudes",
-    }
+    look_alikes: ClassVar[Mapping[str, str]] = {"torque_saturation": "several amplitudes"}
 
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:

@@ -56,9 +56,7 @@ class RotorInertia(MotorTorque):
         "chirp past 8 Hz": frozenset({"controller_gain", "torque_constant", "transmission_ratio"}),
         "several postures": INERTIAL,
     }
-    look_alikes: ClassVar[Mapping[str, str]] = {
-        "link_mass": "several postures",
-    }
+    look_alikes: ClassVar[Mapping[str, str]] = {"link_mass": "several postures"}
 
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:

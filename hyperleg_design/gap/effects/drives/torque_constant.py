@@ -69,9 +69,7 @@ class TorqueConstant(MotorEffect):
         "torque-off swing": WITHOUT_DRIVE,
         "known payload": WITH_LOAD,
     }
-    look_alikes: ClassVar[Mapping[str, str]] = {
-        "payload": "a known payload, or several loads",
-    }
+    look_alikes: ClassVar[Mapping[str, str]] = {"payload": "a known payload, or several loads"}
 
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:

@@ -55,9 +55,7 @@ class TorqueSaturation(MotorEffect):
             "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor",
         ),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "log torque or current": BEYOND_COMMANDS,
-    }
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {"log torque or current": BEYOND_COMMANDS}
 
     @override
     def excited(self, log: Log, motion: Motion) -> Excitation:

@@ -55,7 +55,7 @@ class GroundCompliance(FootEffect):
         ),
     )
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "push on the ground": FRICTION | INERTIAL | {"ground_friction"},
+        "push on the ground": FRICTION | INERTIAL | {"ground_friction"}
     }
 
     @override

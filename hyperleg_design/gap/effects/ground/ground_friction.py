@@ -49,7 +49,7 @@ class GroundFriction(FootEffect):
         ),
     )
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "push on the ground": FRICTION | INERTIAL | {"ground_compliance"},
+        "push on the ground": FRICTION | INERTIAL | {"ground_compliance"}
     }
 
     @override

@@ -48,11 +48,9 @@ class CoulombFriction(DescribedFriction):
     )
     share: ClassVar[float] = SHARE
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "slow ramp": FRICTION | {"cogging", "joint_spring"},
+        "slow ramp": FRICTION | {"cogging", "joint_spring"}
     }
-    look_alikes: ClassVar[Mapping[str, str]] = {
-        "backlash": "preload",
-    }
+    look_alikes: ClassVar[Mapping[str, str]] = {"backlash": "preload"}
 
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:

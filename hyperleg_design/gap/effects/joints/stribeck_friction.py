@@ -63,7 +63,7 @@ class StribeckFriction(JointTorque):
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "slow ramp": frozenset(
             {"backlash", "cogging", "load_dependent_friction", "viscous_friction"}
-        ),
+        )
     }
 
     @override

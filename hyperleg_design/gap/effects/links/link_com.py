@@ -42,9 +42,7 @@ class LinkCom(OwnInertiaEffect):
         )
         for axis in "xyz"
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "several postures": INERTIAL,
-    }
+    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {"several postures": INERTIAL}
 
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:

@@ -43,7 +43,7 @@ class LinkMass(OwnInertiaEffect):
     )
     linear: ClassVar[bool] = True
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "several postures": frozenset({"payload"}),
+        "several postures": frozenset({"payload"})
     }
 
     @override

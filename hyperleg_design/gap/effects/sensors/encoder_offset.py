@@ -55,11 +55,9 @@ class EncoderOffset(JointEffect):
         ),
     )
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "several postures": INERTIAL | {"imu_bias", "joint_spring", "torque_constant"},
+        "several postures": INERTIAL | {"imu_bias", "joint_spring", "torque_constant"}
     }
-    look_alikes: ClassVar[Mapping[str, str]] = {
-        "link_com": "several postures",
-    }
+    look_alikes: ClassVar[Mapping[str, str]] = {"link_com": "several postures"}
 
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:

@@ -53,7 +53,7 @@ class ImuBias(Effect):
         ),
     )
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "rest level": INERTIAL | {"encoder_offset", "joint_spring"},
+        "rest level": INERTIAL | {"encoder_offset", "joint_spring"}
     }
 
     @override
