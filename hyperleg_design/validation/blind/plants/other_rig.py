@@ -18,7 +18,13 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.validation.blind.plants.plant import RigPlant, Trace
+from hyperleg_design.validation.blind.plants.plant import (
+    RigPlant,
+    Trace,
+    columns_of,
+    inverse_inertia,
+    traces_of,
+)
 from hyperleg_design.validation.blind.plants.rig import SETTLING
 
 STEP = 0.2e-3
@@ -77,7 +83,7 @@ def simulate_other(
     soft_limit = STIFFENING * np.abs(matrix).max(1)
     mobility = np.stack(
         [
-            1 / i + np.einsum("im,ij,jm->m", k, _inverse(p), k)
+            1 / i + np.einsum("im,ij,jm->m", k, inverse_inertia(p), k)
             for p, k, i in zip(plants, matrix, inertia, strict=True)
         ]
     )
@@ -95,9 +101,8 @@ def simulate_other(
         for values in (coulomb, static, viscous):
             values[:, :m] += values[:, m:] / (gear if values is not viscous else gear**2)
             values[:, m:] = 0
-        joint_load, load_at = load[:, m:].copy(), load[:, :m] + load[:, m:]
+        load_at = load[:, :m] + load[:, m:]
         stribeck[:, :m] = np.where(load[:, m:] > 0, stribeck[:, :m], stribeck[:, m:] * gear)
-        del joint_load
         load = np.concatenate([load_at, np.zeros((b, n))], -1)
     at_joints = bool(
         coulomb[:, m:].any()
@@ -154,21 +159,7 @@ def simulate_other(
     seen = np.zeros((DIFFERENCED + 1, b, n))
     lines, columns = np.arange(b)[:, None], np.arange(m)[None]
     bus = np.broadcast_to(supply, (b, 1)).copy()
-    kept = {
-        k: np.empty((count, b, w))
-        for k, w in (
-            ("position", n),
-            ("velocity", n),
-            ("encoder", n),
-            ("speed", n),
-            ("motor_velocity", m),
-            ("command", m),
-            ("drive_torque", m),
-            ("pull", n),
-            ("temperature", m),
-            ("voltage", 1),
-        )
-    }
+    kept = {name: np.empty((count, b, width)) for name, width in columns_of(n, m).items()}
     joint_pull = np.zeros((b, n))
     for tick in range(-lead, count):
         row, within = divmod(max(tick, 0), hold)
@@ -282,22 +273,4 @@ def simulate_other(
             spin = np.sign(free) * np.maximum(np.abs(free) - h * capacity / inertia, 0.0)
             q = q + 0.5 * h * qd
             rotor = rotor + 0.5 * h * spin
-    time = np.arange(count) * control
-    nothing = np.full(count, np.nan)
-    return [
-        Trace(
-            time=time,
-            energy=nothing,
-            voltage=kept["voltage"][:, i, 0],
-            **{k: a[:, i] for k, a in kept.items() if k != "voltage"},
-        )
-        for i in range(b)
-    ]
-
-
-def _inverse(plant: RigPlant) -> np.ndarray:
-    """Inverse of the joints' inertia at the rest posture `(n, n)`."""
-    import pinocchio as pin
-
-    half = np.triu(pin.computeMinverse(plant.model, plant.model.createData(), plant.rest))
-    return half + np.triu(half, 1).T
+    return traces_of(kept, np.full((count, b), np.nan), control)

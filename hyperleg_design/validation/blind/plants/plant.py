@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -135,3 +136,56 @@ class Trace:
     energy: np.ndarray
     """Kinetic and elastic energy of rotors and belts, potential and kinetic of the bodies `(k,)`
     [J]; NaN unless asked for."""
+
+
+def columns_of(n: int, m: int) -> dict[str, int]:
+    """State how many numbers a trace holds at each tick.
+
+    Args:
+        n: joints.
+        m: motors.
+
+    Returns:
+        Columns by field of `Trace`; energy, which is computed afterwards, is missing.
+    """
+    of_joints = dict.fromkeys(("position", "velocity", "encoder", "speed", "pull"), n)
+    of_motors = dict.fromkeys(("motor_velocity", "command", "drive_torque", "temperature"), m)
+    return of_joints | of_motors | {"voltage": 1}
+
+
+def traces_of(kept: Mapping[str, np.ndarray], energy: np.ndarray, step: float) -> list[Trace]:
+    """Cut what `b` plants did side by side into their traces.
+
+    Args:
+        kept: by field of `Trace`, `(k, b, columns)`.
+        energy: `(k, b)` [J].
+        step: between ticks [s].
+
+    Returns:
+        One trace a plant.
+    """
+    time = np.arange(len(energy)) * step
+    return [
+        Trace(
+            time=time,
+            energy=energy[:, i],
+            voltage=kept["voltage"][:, i, 0],
+            **{name: values[:, i] for name, values in kept.items() if name != "voltage"},
+        )
+        for i in range(energy.shape[1])
+    ]
+
+
+def inverse_inertia(plant: RigPlant) -> np.ndarray:
+    """Compute the inverse of the joints' inertia at the posture of rest.
+
+    Args:
+        plant: the rig.
+
+    Returns:
+        The inverse `(n, n)` [1/(kg m^2)].
+    """
+    import pinocchio as pin
+
+    half = np.triu(pin.computeMinverse(plant.model, plant.model.createData(), plant.rest))
+    return np.asarray(half + np.triu(half, 1).T)

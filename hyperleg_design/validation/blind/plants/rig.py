@@ -13,7 +13,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hyperleg_design.validation.blind.plants.plant import RigPlant, Trace
+from hyperleg_design.validation.blind.plants.plant import (
+    RigPlant,
+    Trace,
+    columns_of,
+    inverse_inertia,
+    traces_of,
+)
 
 STEP = 0.25e-3
 """Of the integrator [s]."""
@@ -122,7 +128,7 @@ def simulate(
     given = np.zeros((b, m))
     droop = stall / fastest
 
-    kept = {name: np.empty((count, b, width)) for name, width in _WIDTHS(n, m).items()}
+    kept = {name: np.empty((count, b, width)) for name, width in columns_of(n, m).items()}
     energies = np.full((count, b), np.nan)
     for tick in range(-lead, count):
         row, within = divmod(max(tick, 0), hold)
@@ -232,16 +238,7 @@ def simulate(
                     + 0.5 * (stiff[i] * (x[i] @ split[i]) ** 2).sum()
                     for i in range(b)
                 ]
-    time = np.arange(count) * control
-    return [
-        Trace(
-            time=time,
-            energy=energies[:, i],
-            voltage=kept["voltage"][:, i, 0],
-            **{k: a[:, i] for k, a in kept.items() if k != "voltage"},
-        )
-        for i in range(b)
-    ]
+    return traces_of(kept, energies, control)
 
 
 def _stiff_belts(
@@ -254,32 +251,14 @@ def _stiff_belts(
     """Of belts whose resonance the step cannot follow, a linearly implicit pull: time ahead [s] and
     factor, `(b, m)` each.
     """
-    import pinocchio as pin
-
     mobility = inverse_rotor.copy()
     for row, plant in enumerate(plants):
-        half = np.triu(pin.computeMinverse(plant.model, plant.model.createData(), plant.rest))
-        full = half + np.triu(half, 1).T
-        mobility[row] += np.einsum("im,ij,jm->m", matrix[row], full, matrix[row])
+        inverse = inverse_inertia(plant)
+        mobility[row] += np.einsum("im,ij,jm->m", matrix[row], inverse, matrix[row])
     fast = (STEP * np.sqrt(stiff * mobility) > 0.35) | (STEP * damp * mobility > 0.2)
     return np.where(fast, STEP, 0.0), np.where(
         fast, 1.0 / (1.0 + STEP * (damp + STEP * stiff) * mobility), 1.0
     )
-
-
-def _WIDTHS(n: int, m: int) -> dict[str, int]:
-    return {
-        "position": n,
-        "velocity": n,
-        "encoder": n,
-        "speed": n,
-        "motor_velocity": m,
-        "command": m,
-        "drive_torque": m,
-        "pull": n,
-        "temperature": m,
-        "voltage": 1,
-    }
 
 
 def _lost(share: np.ndarray, count: int, tick: float, seeds: Sequence[int]) -> np.ndarray:

@@ -115,7 +115,7 @@ def build_rig(
         elif wrong.effect == "tilted_gravity":
             gravity = tilted(wrong.size, wrong.shape["heading"])
         else:
-            _CHANGES[wrong.effect](values, place, wrong, reach)
+            _change(values, place, wrong, reach)
     return RigPlant(model=true.pinocchio(gravity), **values)
 
 
@@ -167,24 +167,6 @@ class _Place:
         return float(self.chain.peak_torque[self.chain.motors.index(self.name)])
 
 
-def _coulomb(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    for name in ("coulomb", "static"):
-        v[name][at.coordinate] += w.size * at.peak
-
-
-def _viscous(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["viscous"][at.coordinate] += w.size * at.peak / _gear(at)
-
-
-def _stribeck(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["static"][at.coordinate] += w.size * at.peak
-    v["stribeck_speed"][at.coordinate] = w.shape["speed"] * _gear(at)
-
-
-def _load(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["load_friction"][at.coordinate] += w.size
-
-
 def _gear(at: _Place) -> float:
     """Speed of the coordinate over that of a joint."""
     return (
@@ -194,109 +176,79 @@ def _gear(at: _Place) -> float:
     )
 
 
-def _torque_constant(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["torque_scale"][at.motor] *= 1.0 - w.size
-
-
-def _saturation(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    assert reach is not None
-    v["peak_torque"][at.motor] = np.minimum(
-        v["peak_torque"][at.motor], (1.0 - w.size) * reach.command[at.motor]
-    )
-
-
-def _derating(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["start_temperature"][at.motor] = HEATED
-    v["derating"][at.motor] = w.size / 100.0
-
-
-def _sag(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["supply"] = v["voltage"] * (1.0 - w.size)
-
-
-def _delay(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["delay"][at.motor] += w.size
-
-
-def _bandwidth(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["lag"][at.motor] += w.size
-
-
-def _rotor(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["rotor_inertia"][at.motor] += w.size * at.chain.rotor_inertia[at.motor]
-
-
-def _elasticity(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["belt_stiffness"][at.motor] /= w.size
-    v["belt_damping"][at.motor] /= np.sqrt(w.size)
-
-
-def _backlash(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["backlash"][at.motor] += w.size * np.abs(at.chain.joint_from_motor).max(0)[at.motor]
-
-
-def _ratio(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["joint_from_motor"][:, at.motor] *= 1.0 + w.size
-
-
-def _offset(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["offset"][at.joint] += w.size
-
-
-def _gain(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["stiffness"][at.joint] *= 1.0 + w.size * w.shape["stiffness"]
-    v["damping"][at.joint] *= 1.0 + w.size * w.shape["damping"]
-
-
-def _cogging(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["cogging"][at.motor] = w.size * at.chain.peak_torque[at.motor]
-    v["cogging_order"][at.motor], v["cogging_phase"][at.motor] = w.shape["order"], w.shape["phase"]
-
-
-def _spring(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["spring"][at.joint] += w.size * at.peak
-    v["spring_rest"][at.joint] = w.shape["rest"]
-
-
-def _ripple(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["ripple"][at.motor] = w.size
-
-
-def _patch(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["patch"][at.joint] = w.size * at.peak
-    v["patch_middle"][at.joint] = at.chain.rest[at.joint] + w.shape["shift"]
-
-
-def _hysteresis(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["hysteresis"][at.joint] = w.size * at.peak
-
-
-def _loss(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["loss"] = w.size
-
-
-def _push(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["push"][at.joint], v["push_frequency"] = w.size * at.peak, w.shape["frequency"]
-
-
-def _hardening(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["hardening"][at.joint] = w.size * at.peak
-
-
-def _coupling(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["coupling"][at.joint, int(w.shape["other"])] = w.size * at.peak
-
-
-def _drift(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["drift"][at.joint] = w.size
-
-
-def _drag(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["drag"][at.joint] = w.size * at.peak
-
-
-def _eccentricity(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
-    v["eccentricity"][at.joint] = w.size
+def _change(v: dict[str, Any], at: _Place, w: Wrong, reach: Reach | None) -> None:
+    """Change the values of a plant by what is wrong with it, but for its rigid bodies."""
+    match w.effect:
+        case "coulomb_friction":
+            for name in ("coulomb", "static"):
+                v[name][at.coordinate] += w.size * at.peak
+        case "viscous_friction":
+            v["viscous"][at.coordinate] += w.size * at.peak / _gear(at)
+        case "stribeck_friction":
+            v["static"][at.coordinate] += w.size * at.peak
+            v["stribeck_speed"][at.coordinate] = w.shape["speed"] * _gear(at)
+        case "load_dependent_friction":
+            v["load_friction"][at.coordinate] += w.size
+        case "torque_constant":
+            v["torque_scale"][at.motor] *= 1.0 - w.size
+        case "torque_saturation":
+            assert reach is not None
+            v["peak_torque"][at.motor] = np.minimum(
+                v["peak_torque"][at.motor], (1.0 - w.size) * reach.command[at.motor]
+            )
+        case "thermal_derating":
+            v["start_temperature"][at.motor] = HEATED
+            v["derating"][at.motor] = w.size / 100.0
+        case "voltage_sag":
+            v["supply"] = v["voltage"] * (1.0 - w.size)
+        case "command_delay":
+            v["delay"][at.motor] += w.size
+        case "actuator_bandwidth":
+            v["lag"][at.motor] += w.size
+        case "rotor_inertia":
+            v["rotor_inertia"][at.motor] += w.size * at.chain.rotor_inertia[at.motor]
+        case "transmission_elasticity":
+            v["belt_stiffness"][at.motor] /= w.size
+            v["belt_damping"][at.motor] /= np.sqrt(w.size)
+        case "backlash":
+            v["backlash"][at.motor] += w.size * np.abs(at.chain.joint_from_motor).max(0)[at.motor]
+        case "transmission_ratio":
+            v["joint_from_motor"][:, at.motor] *= 1.0 + w.size
+        case "encoder_offset":
+            v["offset"][at.joint] += w.size
+        case "controller_gain":
+            v["stiffness"][at.joint] *= 1.0 + w.size * w.shape["stiffness"]
+            v["damping"][at.joint] *= 1.0 + w.size * w.shape["damping"]
+        case "cogging":
+            v["cogging"][at.motor] = w.size * at.chain.peak_torque[at.motor]
+            v["cogging_order"][at.motor] = w.shape["order"]
+            v["cogging_phase"][at.motor] = w.shape["phase"]
+        case "joint_spring":
+            v["spring"][at.joint] += w.size * at.peak
+            v["spring_rest"][at.joint] = w.shape["rest"]
+        case "torque_ripple":
+            v["ripple"][at.motor] = w.size
+        case "friction_patch":
+            v["patch"][at.joint] = w.size * at.peak
+            v["patch_middle"][at.joint] = at.chain.rest[at.joint] + w.shape["shift"]
+        case "hysteresis":
+            v["hysteresis"][at.joint] = w.size * at.peak
+        case "packet_loss":
+            v["loss"] = w.size
+        case "periodic_push":
+            v["push"][at.joint], v["push_frequency"] = w.size * at.peak, w.shape["frequency"]
+        case "hardening_spring":
+            v["hardening"][at.joint] = w.size * at.peak
+        case "cross_coupling":
+            v["coupling"][at.joint, int(w.shape["other"])] = w.size * at.peak
+        case "sensor_drift":
+            v["drift"][at.joint] = w.size
+        case "fluid_drag":
+            v["drag"][at.joint] = w.size * at.peak
+        case "encoder_eccentricity":
+            v["eccentricity"][at.joint] = w.size
+        case what:
+            raise ValueError(f"{what} is nothing that a plant knows")
 
 
 def _payload(chain: Chain, wrong: Wrong) -> Chain:
@@ -320,33 +272,3 @@ def _link_com(chain: Chain, wrong: Wrong) -> Chain:
 
 
 _RIGID = {"payload": _payload, "link_mass": _link_mass, "link_com": _link_com}
-_CHANGES = {
-    "coulomb_friction": _coulomb,
-    "viscous_friction": _viscous,
-    "stribeck_friction": _stribeck,
-    "load_dependent_friction": _load,
-    "torque_constant": _torque_constant,
-    "torque_saturation": _saturation,
-    "thermal_derating": _derating,
-    "voltage_sag": _sag,
-    "command_delay": _delay,
-    "actuator_bandwidth": _bandwidth,
-    "rotor_inertia": _rotor,
-    "transmission_elasticity": _elasticity,
-    "backlash": _backlash,
-    "transmission_ratio": _ratio,
-    "encoder_offset": _offset,
-    "controller_gain": _gain,
-    "cogging": _cogging,
-    "joint_spring": _spring,
-    "torque_ripple": _ripple,
-    "friction_patch": _patch,
-    "hysteresis": _hysteresis,
-    "packet_loss": _loss,
-    "periodic_push": _push,
-    "hardening_spring": _hardening,
-    "cross_coupling": _coupling,
-    "sensor_drift": _drift,
-    "fluid_drag": _drag,
-    "encoder_eccentricity": _eccentricity,
-}
