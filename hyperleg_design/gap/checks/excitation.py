@@ -137,9 +137,10 @@ def _content(values: np.ndarray, rate: float, *, noisy: bool = True) -> float:
     frequency = np.fft.rfftfreq(length, 1 / rate)
     scale = 4 * np.sin(np.pi * frequency / rate) ** 2  # of a difference
     top = slice(3 * len(power) // 4, None)
+    # median of an exponential
     variance = max(
         float(np.median(power[top] / scale[top])) / np.log(2), step**2 / 12 * float(window @ window)
-    )  # median of an exponential
+    )
     above = np.cumsum(power[::-1])[::-1]
     enough = np.flatnonzero(
         above >= max(0.02 * above[0], noisy * RULES.motion.noise * variance * float(scale.sum()))

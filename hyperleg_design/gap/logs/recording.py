@@ -81,14 +81,7 @@ def log_of_trial(
     )
 
 
-def log_of_recording(
-    environment: Environment,
-    recording: Recording,
-    simulation: int = 0,
-    *,
-    name: str = "rollout",
-    metadata: Mapping[str, Any] | None = None,
-) -> Log:
+def log_of_recording(environment: Environment, recording: Recording, simulation: int = 0) -> Log:
     """Make the log of one simulation of `simulation.rollout.rollout`, up to the end of its first
     episode.
 
@@ -96,8 +89,6 @@ def log_of_recording(
         environment: that was recorded.
         recording: with all signals.
         simulation: which.
-        name: of the log.
-        metadata: fields of `Metadata` to replace.
 
     Returns:
         The log.
@@ -122,7 +113,7 @@ def log_of_recording(
         for n, values in recording.signals.items()
         if n in TRIAL_SIGNALS or n.startswith(TOLD)
     }
-    return _log(design, environment.layout, recording.time_step, found, name, dict(metadata or {}))
+    return _log(design, environment.layout, recording.time_step, found, "rollout", {})
 
 
 def write_logs(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]) -> list[Path]:

@@ -161,9 +161,8 @@ def quantum(values: np.ndarray) -> float:
     if len(levels) < 2 or len(levels) > 0.95 * len(values):
         return 0.0
     gaps = np.diff(levels)
-    real = gaps[
-        gaps > 1e-6 * max(abs(levels[0]), abs(levels[-1]), 1e-12)
-    ]  # not the rounding of single precision
+    # not the rounding of single precision
+    real = gaps[gaps > 1e-6 * max(abs(levels[0]), abs(levels[-1]), 1e-12)]
     if not len(real):
         return 0.0
     step = float(real.min())

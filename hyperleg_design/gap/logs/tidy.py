@@ -64,9 +64,8 @@ def tidied(
     ends = np.append(starts[1:], len(time))
     merged = {column: values[starts] for column, values in signals.items()}
     for later in range(1, int((ends - starts).max())):
-        row = np.minimum(
-            starts + later, ends - 1
-        )  # what the first of several rows does not know, a later one may
+        # what the first of several rows does not know, a later one may
+        row = np.minimum(starts + later, ends - 1)
         for column, values in signals.items():
             merged[column] = np.where(np.isnan(merged[column]), values[row], merged[column])
     return time[starts], merged, tuple(remarks)

@@ -217,9 +217,8 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
     for number, cause in enumerate(content["causes"]):
         try:
             key = cause["effect"], cause["location"]
-            own = {
-                p.name for p in effect(str(key[0])).parameters
-            }  # the rest is told for people: a limit for its inverse
+            # the rest is told for people: a limit for its inverse
+            own = {p.name for p in effect(str(key[0])).parameters}
             values = {
                 name: value["value"] for name, value in cause["parameters"].items() if name in own
             }

@@ -30,7 +30,7 @@ from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
 
 LONGEST_STEP = 0.00125
-"""Of the simulation, where nobody gives one [s]: above it the controllers' discretisation shows
+"""Of the simulation [s]: above it the controllers' discretisation shows
 (assumed)."""
 INPUTS = ("target", "command", "torque")
 """What a replay can follow."""
@@ -95,7 +95,6 @@ def replay(
     *,
     follow: str = "",
     keeps_targets: bool = True,
-    time_step: float | None = None,
 ) -> Replay:
     """Predict windows of a log, once with each change.
 
@@ -108,7 +107,6 @@ def replay(
         keeps_targets: whether the controller keeps a target until the next row, as one that is set
             at the rate of the log; otherwise targets move evenly from row to row, as those of a
             controller that is faster than the log.
-        time_step: of the simulation, as a rule a fraction of a tick [s].
 
     Returns:
         Predicted positions and velocities of each change and window.
@@ -119,7 +117,7 @@ def replay(
     windows = windows or short_windows(signals)
     follow = follow or best_input(signals)
     inputs = _inputs(signals, follow)
-    substeps = max(int(np.ceil(signals.step / (time_step or LONGEST_STEP) - 1e-9)), 1)
+    substeps = max(int(np.ceil(signals.step / LONGEST_STEP - 1e-9)), 1)
     runs = [
         _run(
             signals,

@@ -25,13 +25,12 @@ class Windows:
         return np.asarray(self.start[:, None] + np.arange(self.length + 1))
 
 
-def short_windows(signals: Signals, duration: float = 0.25, stride: float | None = None) -> Windows:
-    """Choose windows of one length that hold valid ticks only.
+def short_windows(signals: Signals, duration: float = 0.25) -> Windows:
+    """Choose windows of one length, end to end, that hold valid ticks only.
 
     Args:
         signals: conditioned log.
         duration: of each window [s].
-        stride: between their starts [s]; end to end by default.
 
     Returns:
         The windows.
@@ -40,9 +39,8 @@ def short_windows(signals: Signals, duration: float = 0.25, stride: float | None
         InputError: the log has no valid stretch that long.
     """
     length = max(round(duration / signals.step), 1)
-    every = max(round((stride or duration) / signals.step), 1)
     total = np.concatenate([[0], np.cumsum(signals.valid)])
-    starts = np.arange(0, len(signals.time) - length, every)
+    starts = np.arange(0, len(signals.time) - length, length)
     starts = starts[total[starts + length + 1] - total[starts] == length + 1]
     if not len(starts):
         raise InputError(

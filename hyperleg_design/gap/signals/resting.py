@@ -103,14 +103,12 @@ def travelled(position: np.ndarray, still: np.ndarray) -> np.ndarray:
     return np.asarray(position - np.take_along_axis(position, last, 0))
 
 
-def sticking(signals: Signals, underway: float = UNDERWAY) -> np.ndarray:
+def sticking(signals: Signals) -> np.ndarray:
     """Find the ticks at which a joint may stick, so that its friction is whatever the other torques
     ask for.
 
     Args:
         signals: a conditioned log.
-        underway: way without rest or return from which a slow joint slides, over that on which
-            friction turns over; where torques are measured.
 
     Returns:
         `(t, n)`.
@@ -132,7 +130,7 @@ def sticking(signals: Signals, underway: float = UNDERWAY) -> np.ndarray:
         begun = (
             True
             if signals.measured is None
-            else np.abs(travelled(signals.position, still)) < underway * presliding(signals)
+            else np.abs(travelled(signals.position, still)) < UNDERWAY * presliding(signals)
         )
         still |= (
             (np.abs(signals.velocity) < CREEP)

@@ -235,9 +235,8 @@ def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: in
     lowest = min(2 * np.pi * LOWEST_CROSSOVER, 0.3 * nyquist)
     crossovers = np.geomspace(lowest, MOST_PER_SAMPLE * nyquist, CROSSOVERS)
     best, found = -np.inf, Noise(float(np.std(samples)), float(crossovers[-1]))
-    for (
-        steeper
-    ) in STEEPER:  # commanded motion ends in a band of its own, more steeply than white jerk
+    # commanded motion ends in a band of its own, more steeply than white jerk
+    for steeper in STEEPER:
         shape = 1 + (crossovers[:, None] / omega) ** (2 * (order + steeper))
         level = np.mean(power / shape, 1)
         likelihood = -np.sum(np.log(shape), 1) - len(omega) * np.log(level)

@@ -36,19 +36,12 @@ class _Enough(Exception):
     """The budget is used up."""
 
 
-def fit_sysid(
-    signals: Sequence[Signals],
-    drives: DriveSet,
-    *,
-    iterations: int = ITERATIONS,
-    seconds: float = np.inf,
-) -> Fitted:
+def fit_sysid(signals: Sequence[Signals], drives: DriveSet, *, seconds: float = np.inf) -> Fitted:
     """Fit the parameters by `mujoco.sysid.optimize`.
 
     Args:
         signals: conditioned logs with targets and gains, base fixed.
         drives: parameters of the robot.
-        iterations: at most.
         seconds: budget.
 
     Raises:
@@ -136,7 +129,7 @@ def fit_sysid(
                 residual_fn=residual,
                 optimizer="mujoco",
                 verbose=False,
-                max_iters=iterations,
+                max_iters=ITERATIONS,
             )
         stopped = "finished"
     except _Enough:

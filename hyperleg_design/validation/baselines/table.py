@@ -151,7 +151,6 @@ class Table:
 
 def baselines_table(
     folder: str | os.PathLike[str],
-    out: str | os.PathLike[str] | None = None,
     *,
     methods: Sequence[str] = METHODS,
     cases: Sequence[str] = (),
@@ -165,7 +164,6 @@ def baselines_table(
 
     Args:
         folder: of a finished blind trial.
-        out: folder to write into, which exists; the trial's by default.
         methods: of `METHODS`.
         cases: their names, such as 003; all by default.
         budget: of each fit [s].
@@ -196,12 +194,11 @@ def baselines_table(
         )
     told = tuple((name, _told(truths[name])) for name in (list(cases) or known) if name in truths)
     table = Table(tuple(entries), budget, told)
-    place = folder if out is None else Path(out)
     write_json(
-        place / "baselines.json",
+        folder / "baselines.json",
         {"budget": budget, "summary": table.rows(), "entries": [asdict(e) for e in entries]},
     )
-    write_text(place / "baselines.md", table.markdown())
+    write_text(folder / "baselines.md", table.markdown())
     return table
 
 

@@ -177,9 +177,8 @@ class _Rig:
 
     def traces(self, jobs: Sequence[tuple[Sequence[Wrong], np.ndarray, int]]) -> list[Trace]:
         plants = [build_rig(self.chain, self.day, wrongs, self.reach) for wrongs, _, _ in jobs]
-        with np.errstate(
-            all="ignore"
-        ):  # a size too large may shake a rig to pieces; it is then not taken
+        # a size too large may shake a rig to pieces; it is then not taken
+        with np.errstate(all="ignore"):
             return self.simulator(
                 plants,
                 np.stack([t for _, t, _ in jobs]),

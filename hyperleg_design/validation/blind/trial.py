@@ -266,7 +266,6 @@ def _make_one(plan: Plan, making: str) -> str:
 def diagnose_trial(
     folder: str | os.PathLike[str],
     *,
-    seed: int = 0,
     workers: int = 1,
     progress: bool = False,
     diagnose: Callable[..., Any] = own_diagnosis,
@@ -275,10 +274,9 @@ def diagnose_trial(
 
     Args:
         folder: of the trial.
-        seed: given to every diagnosis.
         workers: processes, each on one thread.
         progress: show a bar.
-        diagnose: `diagnose(robot, logs, reference, seed=, threads=)`, by default the room's own; an
+        diagnose: `diagnose(robot, logs, reference, threads=)`, by default the room's own; an
             object that can be pickled.
 
     Returns:
@@ -294,17 +292,14 @@ def diagnose_trial(
     with _bar(len(names), len(names) - len(waiting), "diagnoses", progress) as bar:
         for _ in spread(
             _diagnose_one,
-            [
-                (str(folder / CASES / n), str(folder / DIAGNOSES / n), seed, diagnose)
-                for n in waiting
-            ],
+            [(str(folder / CASES / n), str(folder / DIAGNOSES / n), diagnose) for n in waiting],
             workers,
         ):
             bar.update()
     return len(waiting)
 
 
-def _diagnose_one(case: str, out: str, seed: int, diagnose: Callable[..., Any]) -> None:
+def _diagnose_one(case: str, out: str, diagnose: Callable[..., Any]) -> None:
     entry = json.loads((Path(case) / "case.json").read_text())
     robot = Path(case) / entry["robot"]
     begun = time.perf_counter()
@@ -312,19 +307,12 @@ def _diagnose_one(case: str, out: str, seed: int, diagnose: Callable[..., Any]) 
         logs = [read_log(Path(case) / p) for p in entry["logs"]]
         references = [read_log(Path(case) / p) for p in entry["references"]]
         found = as_mapping(
-            diagnose(
-                str(robot) if robot.is_file() else entry["robot"],
-                logs,
-                references,
-                seed=seed,
-                threads=1,
-            )
+            diagnose(str(robot) if robot.is_file() else entry["robot"], logs, references, threads=1)
         )
     except HyperlegError as error:
         found = {"schema": 1, "verdict": FAILED, "message": str(error)}
-    except (
-        Exception
-    ) as error:  # one case that breaks the diagnosis is a miss, not the end of a trial
+    except Exception as error:
+        # one case that breaks the diagnosis is a miss, not the end of a trial
         found = {"schema": 1, "verdict": FAILED, "message": f"{type(error).__name__}: {error}"}
     seconds = time.perf_counter() - begun
     write_json(Path(out) / "diagnosis.json", found)

@@ -106,9 +106,8 @@ def walking_residual(log: Log, robot: Chain) -> np.ndarray:
     gravity = rigid.model.gravity.linear.copy()
     needed = np.empty((len(time), 6 + len(robot.joints)))
     try:
-        rigid.model.gravity.linear = np.zeros(
-            3
-        )  # the accelerometer's specific force has gravity in it
+        # the accelerometer's specific force has gravity in it
+        rigid.model.gravity.linear = np.zeros(3)
         for k in range(len(time)):
             w, x, y, z = quaternion[k] / np.linalg.norm(quaternion[k])
             world = pin.Quaternion(w, x, y, z).toRotationMatrix()

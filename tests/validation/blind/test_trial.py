@@ -18,7 +18,7 @@ def trial(tmp_path_factory):
     return folder
 
 
-def knows_nothing(robot, logs, reference, *, seed, threads):
+def knows_nothing(robot, logs, reference, *, threads):
     assert logs
     assert threads == 1
     return {
@@ -31,7 +31,7 @@ def knows_nothing(robot, logs, reference, *, seed, threads):
     }
 
 
-def breaks_down(robot, logs, reference, *, seed, threads):
+def breaks_down(robot, logs, reference, *, threads):
     raise ValueError("out of order")
 
 

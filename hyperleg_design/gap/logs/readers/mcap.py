@@ -76,7 +76,6 @@ def messages(path: Path, types: tuple[str, ...]) -> Iterator[Message]:
         raise InputError(
             path.name, "", None, f"cannot be read ({error.strerror or error})"
         ) from None
-    except (
-        Exception
-    ) as error:  # damaged bytes make the library and its decompressors raise anything
+    except Exception as error:
+        # damaged bytes make the library and its decompressors raise anything
         raise InputError(path.name, "", None, f"is damaged ({in_short(error, 60)})") from None

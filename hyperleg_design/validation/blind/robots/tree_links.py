@@ -28,9 +28,8 @@ def tree_links(model: Any) -> tuple[Link, ...]:
     import mujoco
 
     links: list[Link] = []
-    home: dict[int, tuple[int, np.ndarray, np.ndarray]] = {
-        0: (-1, np.eye(3), np.zeros(3))
-    }  # link, its frame's rotation and place of the body
+    # link, its frame's rotation and place of the body
+    home: dict[int, tuple[int, np.ndarray, np.ndarray]] = {0: (-1, np.eye(3), np.zeros(3))}
     for body in range(1, model.nbody):
         index, rotation, place = home[int(model.body_parentid[body])]
         turned = rotation @ matrix(model.body_quat[body])
