@@ -90,10 +90,10 @@ class Build(Chosen):
             for p in folder.rglob("*")
             if p.is_file() and not p.name.startswith(".")
         )
-        if self.json:
-            emit({"design": design.name, "folder": str(folder), "files": files})
-        else:
-            print(f"{design.name} -> {folder}: {', '.join(files)}")
+        self.tell(
+            {"design": design.name, "folder": str(folder), "files": files},
+            f"{design.name} -> {folder}: {', '.join(files)}",
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,10 +112,7 @@ class Check(Printing):
         from hyperleg_design.report import checking
 
         findings = checking.check_paths(self.paths)
-        if self.json:
-            emit(findings)
-        else:
-            print(checking.checks_text(findings))
+        self.tell(findings, checking.checks_text(findings))
         if any(f["errors"] for f in findings):
             raise SystemExit(2)
 
@@ -176,10 +173,9 @@ class Analyze(Chosen):
         from hyperleg_design.sizing.analysis import analyze
 
         analysis = analyze(self.load())
-        if self.json:
-            emit(analysis)
-        else:
-            print((tree_analysis_text if "family" in analysis else analysis_text)(analysis))
+        self.tell(
+            analysis, (tree_analysis_text if "family" in analysis else analysis_text)(analysis)
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -222,10 +218,7 @@ class Compare(Printing):
         for protocol, entries in walks.items():
             for entry, walked in zip(measures.values(), entries, strict=True):
                 entry[f"evaluated {protocol}"] = walked
-        if self.json:
-            emit(measures)
-        else:
-            print(comparison.compare_text(measures))
+        self.tell(measures, comparison.compare_text(measures))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -304,10 +297,7 @@ class Study(Printing):
         if not self.json and (text := coverage_text(trainings)):
             print(text, flush=True)
         page = run_study(self.out, policies=self.policies, progress=not self.json)
-        if self.json:
-            emit({"page": str(page), "trainings": trainings})
-        else:
-            print(f"open {page}")
+        self.tell({"page": str(page), "trainings": trainings}, f"open {page}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -320,7 +310,4 @@ class Version(Printing):
 
         about = {"hyperleg-design": __version__, "content": str(resources.home())}
         about |= {name: version(name) for name in ("mujoco", "pin", "cvxpy", "numpy", "pyvista")}
-        if self.json:
-            emit(about)
-        else:
-            print("\n".join(f"{k} {v}" for k, v in about.items()))
+        self.tell(about, "\n".join(f"{k} {v}" for k, v in about.items()))

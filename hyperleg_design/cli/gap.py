@@ -39,10 +39,7 @@ class Check(Printing):
         from hyperleg_design.report.gap.text import checks_text
 
         checks = check_sources(self.logs, robot=self.robot, mapping=self.map, out=self.out)
-        if self.json:
-            emit([check.mapping() for check in checks])
-        else:
-            print(checks_text(checks))
+        self.tell([check.mapping() for check in checks], checks_text(checks))
         if not all(check.usable for check in checks):
             raise SystemExit(2)
 
@@ -59,10 +56,7 @@ class Effects(Printing):
         from hyperleg_design.report.gap.show import effects_text
 
         catalogue = effects_table()
-        if self.json:
-            emit(catalogue)
-        else:
-            print(effects_text(catalogue))
+        self.tell(catalogue, effects_text(catalogue))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,10 +87,7 @@ class Show(Printing):
         )
         path = show_figure(shown, self.out / f"{self.effect}.png")
         summary = {**show_summary(shown), "figure": str(path)}
-        if self.json:
-            emit(summary)
-        else:
-            print(show_text(summary))
+        self.tell(summary, show_text(summary))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -188,10 +179,7 @@ class Measure(Printing):
         if self.out is not None:
             with output_folder(self.out) as folder:
                 write_json(folder / "gap.json", gap.mapping())
-        if self.json:
-            emit(gap.mapping())
-        else:
-            print(gap_text(gap))
+        self.tell(gap.mapping(), gap_text(gap))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,11 +220,7 @@ class Diagnose(Printing):
             threads=self.threads,
             show=show,
         )
-        if self.json:
-            emit(diagnosis)
-        else:
-            print(diagnosis_text(diagnosis))
-            print(f"open {page}")
+        self.tell(diagnosis, f"{diagnosis_text(diagnosis)}\nopen {page}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -277,10 +261,7 @@ class Excite(Printing):
             overrides=self.set,
             progress=not self.json,
         )
-        if self.json:
-            emit(json_module.loads((self.out / "plan.json").read_text()))
-        else:
-            print(text)
+        self.tell(json_module.loads((self.out / "plan.json").read_text()), text)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -338,10 +319,7 @@ class Score(Printing):
         from hyperleg_design.validation.blind.score import score
 
         scores = score(self.folder, reread=self.reread)
-        if self.json:
-            emit(scores)
-        else:
-            print(scores.markdown())
+        self.tell(scores, scores.markdown())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -373,10 +351,7 @@ class Baselines(Printing):
             seed=self.seed,
             progress=not self.json,
         )
-        if self.json:
-            emit(table)
-        else:
-            print(table.markdown())
+        self.tell(table, table.markdown())
 
 
 VERBS: dict[str, Any] = {

@@ -146,7 +146,7 @@ class Video(Printing):
             else:
                 motion = walk_motion(trial, **part, **look)
         path = write_video(motion, self.out, progress=not self.json)
-        if self.json:
-            emit({"file": str(path), "frames": len(motion.focus), "shows": caption})
-        else:
-            print(f"{caption}\nwritten to {path}")
+        self.tell(
+            {"file": str(path), "frames": len(motion.focus), "shows": caption},
+            f"{caption}\nwritten to {path}",
+        )

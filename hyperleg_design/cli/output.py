@@ -20,6 +20,18 @@ class Printing:
     motors: Path | None = None
     """Folder with motors of your own (NAME.yaml), beside the shipped ones."""
 
+    def tell(self, content: object, text: str) -> None:
+        """Print a result.
+
+        Args:
+            content: for programs.
+            text: the same for people.
+        """
+        if self.json:
+            emit(content)
+        else:
+            print(text)
+
 
 def emit(content: object) -> None:
     """Print a value as JSON; a dataclass becomes a mapping of its fields.

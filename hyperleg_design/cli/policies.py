@@ -141,10 +141,7 @@ class Campaign(Printing):
         if self.action == "pack":
             require("onnx")
             packed = pack(self.source, self.target, load_campaign(self.file).ship)
-            if self.json:
-                emit(packed)
-            else:
-                print(pack_text(packed))
+            self.tell(packed, pack_text(packed))
             return
         campaign = load_campaign(self.file)
         finished = True
@@ -304,11 +301,8 @@ class Robustness(Printing):
             workers=self.workers,
             progress=not self.json,
         )
-        if self.json:
-            emit(points)
-        else:
-            print(robustness_text(points))
-            print(f"curves in {self.out / 'robustness.png'}")
+        curves = self.out / "robustness.png"
+        self.tell(points, f"{robustness_text(points)}\ncurves in {curves}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -337,8 +331,5 @@ class Paper(Printing):
             print(text, flush=True)
         page = run_paper(self.policies, self.out, workers=self.workers, progress=not self.json)
         tables = read_tables(self.out)
-        if self.json:
-            emit({"page": str(page), "trainings": trainings, "tables": tables})
-        else:
-            print(tables_text(tables))
-            print(f"open {page}")
+        content = {"page": str(page), "trainings": trainings, "tables": tables}
+        self.tell(content, f"{tables_text(tables)}\nopen {page}")

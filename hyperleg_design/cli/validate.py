@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 from hyperleg_design.cli.arguments import AtLeast
-from hyperleg_design.cli.output import Printing, emit
+from hyperleg_design.cli.output import Printing
 from hyperleg_design.errors import InputError
 
 
@@ -60,7 +60,5 @@ class Validate(Printing):
             workers=self.workers,
             progress=not self.json,
         )
-        if self.json:
-            emit({"cases": list(outcome.rows), "skipped": list(outcome.skipped)})
-            return
-        print("\n".join([*outcome.remarks, outcome.markdown()]))
+        content = {"cases": list(outcome.rows), "skipped": list(outcome.skipped)}
+        self.tell(content, "\n".join([*outcome.remarks, outcome.markdown()]))
