@@ -5,7 +5,6 @@ causes, what else it could be, what to do next; everything else is folded away.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -49,37 +48,6 @@ SENSITIVITY = (
 HIDDEN = " The gap that no effect explains hides more."
 
 
-@dataclass(frozen=True)
-class DiagnosisPage:
-    """What the template `diagnosis.html` shows, from top to bottom."""
-
-    title: str
-    verdict: str
-    about: str
-    """Robot and logs."""
-    sentence: str
-    """The verdict."""
-    lead: Sequence[str]
-    robot: Any
-    """Drawing, as markup; empty where the gap has no place."""
-    elsewhere: str
-    """Shares of the gap at no joint."""
-    bars_title: str
-    bars: Sequence[tuple[str, str, float, str]]
-    """Name, value, width [%] and mark of each."""
-    bars_note: str
-    causes: Sequence[CauseRow]
-    remainder: Sequence[str]
-    trace: Sequence[Picture]
-    rivals_title: str
-    rivals: Sequence[CauseRow]
-    equivalent: Sequence[str]
-    next: Sequence[tuple[str, str]]
-    """Sentence and command."""
-    details: Sequence[Details]
-    provenance: Mapping[str, Any]
-
-
 def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence[Signals]) -> Path:
     """Write `index.html` and its figures beside `diagnosis.json`.
 
@@ -100,30 +68,30 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     shown = [part for part in shown if np.isfinite(part.before).any()]
     left = hints(diagnosis.get("residual_shape", ()), shown)
     first, *others = _traces(folder, shown, bool(causes)) or [[]]
-    page = DiagnosisPage(
-        title=f"Gap diagnosis of {signals[0].subject.name}" if signals else "Gap diagnosis",
-        verdict=verdict,
-        about=_about(diagnosis, signals),
-        sentence=verdict_sentence(diagnosis),
-        lead=lead(diagnosis, left),
+    page = {
+        "title": f"Gap diagnosis of {signals[0].subject.name}" if signals else "Gap diagnosis",
+        "verdict": verdict,
+        "about": _about(diagnosis, signals),
+        "sentence": verdict_sentence(diagnosis),
+        "lead": lead(diagnosis, left),
         **_where(diagnosis, signals),
         **_bars(diagnosis),
-        causes=[cause_row(cause) for cause in causes],
-        remainder=left if causes and diagnosis.get("remainder") else left[1:3] if left else [],
-        trace=[] if verdict == "none" else first,
-        rivals_title="Nearest explanations" if verdict == "unknown" else "What else was tried",
-        rivals=[] if verdict == "none" else [_brief(rival) for rival in rivals[:MOST_RIVALS]],
-        equivalent=[
+        "causes": [cause_row(cause) for cause in causes],
+        "remainder": left if causes and diagnosis.get("remainder") else left[1:3] if left else [],
+        "trace": [] if verdict == "none" else first,
+        "rivals_title": "Nearest explanations" if verdict == "unknown" else "What else was tried",
+        "rivals": [] if verdict == "none" else [_brief(rival) for rival in rivals[:MOST_RIVALS]],
+        "equivalent": [
             f"These logs cannot tell apart {joined(named(member) for member in group)}."
             for group in diagnosis["equivalent"]
         ],
-        next=next_steps(diagnosis),
-        details=_details(diagnosis, shown, others, left),
-        provenance={
+        "next": next_steps(diagnosis),
+        "details": _details(diagnosis, shown, others, left),
+        "provenance": {
             **{k: plain(v) for k, v in diagnosis.get("provenance", {}).items() if plain(v)},
             "page made by commit": provenance.git_commit(),
         },
-    )
+    }
     return write_text(folder / "index.html", fill("diagnosis.html", page=page))
 
 
