@@ -11,6 +11,7 @@ are declared; D is mostly the motor's own (kt^2 / R), which no voltage changes. 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -48,14 +49,6 @@ def followed(subject: Subject) -> tuple[Alteration, ...]:
     return (FollowsBattery(subject.supply),) if np.isfinite(subject.supply).any() else ()
 
 
-@dataclass(frozen=True, eq=False)
-class FollowsBattery(Alteration):
-    """Stiffness and limits of some motors in proportion to the measured voltage of the battery."""
-
-    supply: np.ndarray
-    """Nominal `(m,)` [V]; NaN of motors with current control."""
-
-
 class _Follows(Live):
     alteration: FollowsBattery
 
@@ -77,4 +70,10 @@ class _Follows(Live):
         )
 
 
-FollowsBattery.live = _Follows
+@dataclass(frozen=True, eq=False)
+class FollowsBattery(Alteration):
+    """Stiffness and limits of some motors in proportion to the measured voltage of the battery."""
+
+    live: ClassVar[type[Live] | None] = _Follows
+    supply: np.ndarray
+    """Nominal `(m,)` [V]; NaN of motors with current control."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,18 +18,6 @@ from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
 from hyperleg_design.validation.baselines.drive_set import DriveSet
-
-
-@dataclass(frozen=True, eq=False)
-class Drives(Alteration):
-    """Friction, damping and encoder bias of all joints, one row a simulation `(k, n)` each."""
-
-    friction: Any
-    damping: Any
-    bias: Any
-    width: Any
-    """Velocity at which friction has three quarters of its size: that of the model where some of it
-    is taken away [rad/s]."""
 
 
 class _Drives(Live):
@@ -45,7 +33,17 @@ class _Drives(Live):
         )
 
 
-Drives.live = _Drives
+@dataclass(frozen=True, eq=False)
+class Drives(Alteration):
+    """Friction, damping and encoder bias of all joints, one row a simulation `(k, n)` each."""
+
+    live: ClassVar[type[Live] | None] = _Drives
+    friction: Any
+    damping: Any
+    bias: Any
+    width: Any
+    """Velocity at which friction has three quarters of its size: that of the model where some of it
+    is taken away [rad/s]."""
 
 
 def predicted(signals: Signals, drives: DriveSet, values: np.ndarray) -> np.ndarray:

@@ -81,17 +81,6 @@ class ActuatorBandwidth(MotorEffect):
         return np.array([[0.003], [0.01], [0.03]])
 
 
-@dataclass(frozen=True, eq=False)
-class LaggingTorque(Alteration):
-    """A motor's torque follows its command with a lag; exact for a command that is held for a
-    simulation step.
-    """
-
-    motor: str
-    time_constant: Any
-    """`()` or `(n,)` [s]."""
-
-
 class _Lagging(Live):
     kept: ClassVar[tuple[str, ...]] = ("given", "begun")
 
@@ -115,4 +104,13 @@ class _Lagging(Live):
         return command
 
 
-LaggingTorque.live = _Lagging
+@dataclass(frozen=True, eq=False)
+class LaggingTorque(Alteration):
+    """A motor's torque follows its command with a lag; exact for a command that is held for a
+    simulation step.
+    """
+
+    live: ClassVar[type[Live] | None] = _Lagging
+    motor: str
+    time_constant: Any
+    """`()` or `(n,)` [s]."""

@@ -163,17 +163,6 @@ class Cogging(MotorTorque):
         return np.clip(np.column_stack([amplitudes[best], orders[best]]), low, high)
 
 
-@dataclass(frozen=True, eq=False)
-class CoggingTorque(Alteration):
-    """Torque that a rotor resists with, over its angle."""
-
-    motor: str
-    cosine: Any
-    sine: Any
-    order: Any
-    """`()` or `(n,)` each [Nm, Nm, 1/turn]."""
-
-
 class _Cogging(Live):
     alteration: CoggingTorque
 
@@ -188,4 +177,13 @@ class _Cogging(Live):
         return torque
 
 
-CoggingTorque.live = _Cogging
+@dataclass(frozen=True, eq=False)
+class CoggingTorque(Alteration):
+    """Torque that a rotor resists with, over its angle."""
+
+    live: ClassVar[type[Live] | None] = _Cogging
+    motor: str
+    cosine: Any
+    sine: Any
+    order: Any
+    """`()` or `(n,)` each [Nm, Nm, 1/turn]."""

@@ -180,20 +180,6 @@ def _moved(signals: Signals, delay: np.ndarray) -> np.ndarray:
     return found
 
 
-@dataclass(frozen=True, eq=False)
-class LateCommand(Alteration):
-    """Some motors' commands, and some joints' targets, come late, interpolated between simulation
-    steps.
-    """
-
-    motors: tuple[str, ...]
-    joints: tuple[str, ...]
-    delay: Any
-    """Of commands, `()` or `(n,)` [s]."""
-    target_delay: Any = 0.0
-    """Of targets, likewise."""
-
-
 class _Past:
     """What was told in the last steps, to be had some time later."""
 
@@ -254,4 +240,16 @@ class _Late(Live):
         return target
 
 
-LateCommand.live = _Late
+@dataclass(frozen=True, eq=False)
+class LateCommand(Alteration):
+    """Some motors' commands, and some joints' targets, come late, interpolated between simulation
+    steps.
+    """
+
+    live: ClassVar[type[Live] | None] = _Late
+    motors: tuple[str, ...]
+    joints: tuple[str, ...]
+    delay: Any
+    """Of commands, `()` or `(n,)` [s]."""
+    target_delay: Any = 0.0
+    """Of targets, likewise."""

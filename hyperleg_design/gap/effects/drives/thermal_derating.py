@@ -137,17 +137,6 @@ def rated_torque(subject: Subject, motor: int) -> float:
     return known if np.isfinite(known) else RATED_SHARE * motor_strength(subject, motor)
 
 
-@dataclass(frozen=True, eq=False)
-class DeratedMotor(Alteration):
-    """A motor that loses torque with temperature: measured, or modelled from cold."""
-
-    motor: str
-    coefficient: Any
-    """`()` or `(n,)` [1/K]."""
-    rated: float
-    """Continuous torque [Nm]."""
-
-
 class _Derated(Live):
     kept: ClassVar[tuple[str, ...]] = ("rise",)
 
@@ -169,4 +158,13 @@ class _Derated(Live):
         return torque
 
 
-DeratedMotor.live = _Derated
+@dataclass(frozen=True, eq=False)
+class DeratedMotor(Alteration):
+    """A motor that loses torque with temperature: measured, or modelled from cold."""
+
+    live: ClassVar[type[Live] | None] = _Derated
+    motor: str
+    coefficient: Any
+    """`()` or `(n,)` [1/K]."""
+    rated: float
+    """Continuous torque [Nm]."""

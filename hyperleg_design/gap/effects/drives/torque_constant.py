@@ -132,18 +132,6 @@ def _told_twice(signals: Signals, motor: int) -> bool:
     return is_measured(signals, motor) and is_commanded(signals, motor)
 
 
-@dataclass(frozen=True, eq=False)
-class ScaledTorque(Alteration):
-    """Torque of a motor over the one that its drive takes itself to give, or over the one that is
-    read from it.
-    """
-
-    motor: str
-    scale: Any
-    reading: Any = 0.0
-    """`()` or `(n,)` each [-]."""
-
-
 class _Scaled(Live):
     alteration: ScaledTorque
 
@@ -175,4 +163,14 @@ class _Scaled(Live):
         return torque
 
 
-ScaledTorque.live = _Scaled
+@dataclass(frozen=True, eq=False)
+class ScaledTorque(Alteration):
+    """Torque of a motor over the one that its drive takes itself to give, or over the one that is
+    read from it.
+    """
+
+    live: ClassVar[type[Live] | None] = _Scaled
+    motor: str
+    scale: Any
+    reading: Any = 0.0
+    """`()` or `(n,)` each [-]."""

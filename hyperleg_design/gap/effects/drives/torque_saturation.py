@@ -137,15 +137,6 @@ def _limit(inverse: np.ndarray) -> np.ndarray:
         return np.asarray(1 / np.maximum(inverse, 0.0))
 
 
-@dataclass(frozen=True, eq=False)
-class LowerLimit(Alteration):
-    """Largest torque of a motor, where it is below the machine's."""
-
-    motor: str
-    limit: Any
-    """`()` or `(n,)` [Nm]."""
-
-
 class _Lower(Live):
     alteration: LowerLimit
 
@@ -161,4 +152,11 @@ class _Lower(Live):
         return dataclasses.replace(limits, peak_torque=peak)
 
 
-LowerLimit.live = _Lower
+@dataclass(frozen=True, eq=False)
+class LowerLimit(Alteration):
+    """Largest torque of a motor, where it is below the machine's."""
+
+    live: ClassVar[type[Live] | None] = _Lower
+    motor: str
+    limit: Any
+    """`()` or `(n,)` [Nm]."""

@@ -37,22 +37,6 @@ def modelled(
     return np.asarray(SAG * (AT_REST + (1 - AT_REST) * np.minimum(power / reference, 1.0)))
 
 
-@dataclass(frozen=True, eq=False)
-class WeakBattery(Alteration):
-    """Limits and torques of all motors follow the battery's voltage: measured, or modelled."""
-
-    limits: Any
-    torque: Any
-    speed: Any
-    """`()` or `(n,)` each [-, -, rad/s]."""
-    strength: np.ndarray
-    ratio: np.ndarray
-    """Of each motor: torque that it is made for [Nm], and speed over that of the joint that it
-    moves most `(m,)`."""
-    reference_power: float
-    """[W]"""
-
-
 class _Weak(Live):
     kept: ClassVar[tuple[str, ...]] = ("lost", "full")
 
@@ -101,4 +85,18 @@ class _Weak(Live):
         )
 
 
-WeakBattery.live = _Weak
+@dataclass(frozen=True, eq=False)
+class WeakBattery(Alteration):
+    """Limits and torques of all motors follow the battery's voltage: measured, or modelled."""
+
+    live: ClassVar[type[Live] | None] = _Weak
+    limits: Any
+    torque: Any
+    speed: Any
+    """`()` or `(n,)` each [-, -, rad/s]."""
+    strength: np.ndarray
+    ratio: np.ndarray
+    """Of each motor: torque that it is made for [Nm], and speed over that of the joint that it
+    moves most `(m,)`."""
+    reference_power: float
+    """[W]"""

@@ -42,24 +42,6 @@ class DescribedFriction(JointTorque):
         return np.array([[-self._described(subject)[joint]], [largest]])
 
 
-@dataclass(frozen=True, eq=False)
-class JointFriction(Alteration):
-    """Friction at a joint: (coulomb + breakaway exp(-(v/speed)^2) + share |torque|) sign(v) +
-    viscous v, its sign softened.
-    """
-
-    joint: str
-    coulomb: Any = 0.0
-    viscous: Any = 0.0
-    breakaway: Any = 0.0
-    speed: Any = 1.0
-    share: Any = 0.0
-    """Of the torque that the motors give at the joint, less what turns their rotors; `()` or `(n,)`
-    each [Nm, Nms/rad, Nm, rad/s, -]."""
-    width: float = WIDTH
-    """[rad/s]"""
-
-
 class _Friction(Live):
     kept: ClassVar[tuple[str, ...]] = ("before", "begun")
 
@@ -93,4 +75,20 @@ class _Friction(Live):
         return np.asarray(tick.joint_torque[:, self.place] - (self.armature * acceleration).sum(-1))
 
 
-JointFriction.live = _Friction
+@dataclass(frozen=True, eq=False)
+class JointFriction(Alteration):
+    """Friction at a joint: (coulomb + breakaway exp(-(v/speed)^2) + share |torque|) sign(v) +
+    viscous v, its sign softened.
+    """
+
+    live: ClassVar[type[Live] | None] = _Friction
+    joint: str
+    coulomb: Any = 0.0
+    viscous: Any = 0.0
+    breakaway: Any = 0.0
+    speed: Any = 1.0
+    share: Any = 0.0
+    """Of the torque that the motors give at the joint, less what turns their rotors; `()` or `(n,)`
+    each [Nm, Nms/rad, Nm, rad/s, -]."""
+    width: float = WIDTH
+    """[rad/s]"""

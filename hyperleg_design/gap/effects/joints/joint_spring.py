@@ -127,18 +127,6 @@ class JointSpring(JointTorque):
         return np.array([[usual[0], 0.0], [0.0, usual[1]], [0.0, -usual[1]]])
 
 
-@dataclass(frozen=True, eq=False)
-class Spring(Alteration):
-    """Pulls a joint by -(stiffness (q - rest) + preload)."""
-
-    joint: str
-    stiffness: Any
-    preload: Any
-    """`()` or `(n,)` each [Nm/rad, Nm]."""
-    rest: float
-    """[rad]"""
-
-
 class _Pull(Live):
     alteration: Spring
 
@@ -153,4 +141,14 @@ class _Pull(Live):
         return out
 
 
-Spring.live = _Pull
+@dataclass(frozen=True, eq=False)
+class Spring(Alteration):
+    """Pulls a joint by -(stiffness (q - rest) + preload)."""
+
+    live: ClassVar[type[Live] | None] = _Pull
+    joint: str
+    stiffness: Any
+    preload: Any
+    """`()` or `(n,)` each [Nm/rad, Nm]."""
+    rest: float
+    """[rad]"""

@@ -123,15 +123,6 @@ def _basis(signals: Signals, joint: int) -> Basis:
     return found
 
 
-@dataclass(frozen=True, eq=False)
-class ShiftedEncoder(Alteration):
-    """What controller, policy and log are told of a joint's position is off."""
-
-    joint: str
-    offset: Any
-    """`()` or `(n,)` [rad]."""
-
-
 class _Shifted(Live):
     alteration: ShiftedEncoder
 
@@ -143,4 +134,11 @@ class _Shifted(Live):
         return position, velocity
 
 
-ShiftedEncoder.live = _Shifted
+@dataclass(frozen=True, eq=False)
+class ShiftedEncoder(Alteration):
+    """What controller, policy and log are told of a joint's position is off."""
+
+    live: ClassVar[type[Live] | None] = _Shifted
+    joint: str
+    offset: Any
+    """`()` or `(n,)` [rad]."""

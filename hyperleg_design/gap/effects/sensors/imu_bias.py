@@ -113,16 +113,6 @@ class ImuBias(Effect):
         return BiasedImu(values[..., :3] @ turned, values[..., 3:] @ turned)
 
 
-@dataclass(frozen=True, eq=False)
-class BiasedImu(Alteration):
-    """What gyro and accelerometer tell is off."""
-
-    gyro: Any
-    """In the base's axes [rad/s], `(3,)` or `(n, 3)`."""
-    accelerometer: Any
-    """In the base's axes [m/s^2], `(3,)` or `(n, 3)`."""
-
-
 class _Imu(Live):
     alteration: BiasedImu
 
@@ -130,4 +120,12 @@ class _Imu(Live):
         return angular_velocity + self.alteration.gyro, force + self.alteration.accelerometer
 
 
-BiasedImu.live = _Imu
+@dataclass(frozen=True, eq=False)
+class BiasedImu(Alteration):
+    """What gyro and accelerometer tell is off."""
+
+    live: ClassVar[type[Live] | None] = _Imu
+    gyro: Any
+    """In the base's axes [rad/s], `(3,)` or `(n, 3)`."""
+    accelerometer: Any
+    """In the base's axes [m/s^2], `(3,)` or `(n, 3)`."""
