@@ -167,7 +167,7 @@ def test_nulls_change_no_simulation(name, pendulum):
     one = effect(name)
     signals = pendulum(Wrong(), duration=4.0, sees=())
     location = one.locations(signals.subject)[0]
-    windows = short_windows(signals, 0.25, 1.0)
+    windows = short_windows(signals)
     plain, added = replay(
         signals,
         ((), (one.alteration(location, one.nulls, signals.subject),)),
