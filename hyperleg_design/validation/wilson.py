@@ -20,5 +20,5 @@ def wilson(hits: int, of: int) -> tuple[float, float]:
 
     if hits == of == 0:
         return 0.0, 1.0
-    found = binomtest(hits, of).proportion_ci(0.95, "wilson")
-    return float(found.low), float(found.high)
+    interval = binomtest(hits, of).proportion_ci(0.95, "wilson")
+    return float(interval.low), float(interval.high)

@@ -4,14 +4,11 @@ wrongly.
 
 from __future__ import annotations
 
-from weakref import WeakKeyDictionary
-
 import numpy as np
 
 from hyperleg_design.gap.model import pads, rigid
+from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.signals import Signals
-
-_LOGGED: WeakKeyDictionary[Signals, dict[str, np.ndarray]] = WeakKeyDictionary()
 
 
 def needed(
@@ -52,9 +49,9 @@ def needed(
     return found
 
 
+@memoized
 def as_logged(signals: Signals) -> dict[str, np.ndarray]:
-    """What the logged motion needs by `needed`, without rotors; kept, as each location compares
-    with it.
+    """What the logged motion needs by `needed`, without rotors: each location compares with it.
 
     Args:
         signals: a conditioned log, `t` ticks.
@@ -62,6 +59,4 @@ def as_logged(signals: Signals) -> dict[str, np.ndarray]:
     Returns:
         What `needed` returns, of the logged motion.
     """
-    if signals not in _LOGGED:
-        _LOGGED[signals] = needed(signals, signals.position, rotors=False)
-    return _LOGGED[signals]
+    return needed(signals, signals.position, rotors=False)

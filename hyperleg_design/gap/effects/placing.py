@@ -16,16 +16,15 @@ constant is; so do joint torques.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.machine import machine_of
+from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.drives.machine import Machine
 
 SIDES = ("encoders at the joints", "encoders at the rotors")
 """Choices of the parameter `side`: whose positions logs and controllers know."""
@@ -35,8 +34,8 @@ LIVELY = 10.0
 """Acceleration that a robot's drives are taken to be made for where nobody gives their limits
 [rad/s^2]; assumed."""
 _POSTURES = 24
-_STRENGTH: WeakKeyDictionary[Subject, np.ndarray] = WeakKeyDictionary()
-_MACHINES: WeakKeyDictionary[Subject, Machine] = WeakKeyDictionary()
+machine = memoized(machine_of)
+"""Drives of a subject, computed once."""
 
 
 def driven_motors(subject: Subject) -> tuple[str, ...]:
@@ -278,20 +277,7 @@ def limited(
     )
 
 
-def machine(subject: Subject) -> Machine:
-    """Drives of a subject, kept while it lives.
-
-    Args:
-        subject: the robot.
-
-    Returns:
-        The machine.
-    """
-    if subject not in _MACHINES:
-        _MACHINES[subject] = machine_of(subject)
-    return _MACHINES[subject]
-
-
+@memoized
 def joint_strength(subject: Subject) -> np.ndarray:
     """Torque for which each joint is made `(n,)` [Nm]: what its motors can give, else gravity's
     largest and its inertia's share.
@@ -302,15 +288,10 @@ def joint_strength(subject: Subject) -> np.ndarray:
     Returns:
         The torques `(n,)` [Nm].
     """
-    if subject not in _STRENGTH:
-        limit = np.where(np.isfinite(subject.torque_limit), subject.torque_limit, 0.0)
-        given = np.abs(subject.joint_from_motor) @ limit
-        unknown = (
-            np.abs(subject.joint_from_motor) @ (~np.isfinite(subject.torque_limit)).astype(float)
-            > 0
-        ) | (given <= 0)
-        _STRENGTH[subject] = np.where(unknown, _needed(subject), given) if unknown.any() else given
-    return _STRENGTH[subject]
+    share, known = np.abs(subject.joint_from_motor), np.isfinite(subject.torque_limit)
+    given = share @ np.where(known, subject.torque_limit, 0.0)
+    unknown = (share @ (~known).astype(float) > 0) | (given <= 0)
+    return np.where(unknown, _needed(subject), given) if unknown.any() else given
 
 
 def motor_strength(subject: Subject, motor: int) -> float:

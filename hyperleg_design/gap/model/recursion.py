@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hyperleg_design.gap.model.mechanism import BASE, Mechanism
+from hyperleg_design.gap.model.memoized import memoized
 
 SPIN, ANGULAR, LINEAR, PRODUCTS = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 15)
 """Rows of a frame's motion: angular velocity, angular acceleration, acceleration of the origin
@@ -41,12 +41,9 @@ class Joint:
     """Moment on the parent over a sliding joint's position and the force on it `(3, 3)`."""
 
 
-_PARTS: WeakKeyDictionary[Mechanism, tuple[Joint, ...]] = WeakKeyDictionary()
-
-
+@memoized
 def fixed_parts(tree: Mechanism) -> tuple[Joint, ...]:
-    """Compute the constant matrices of every joint of a tree; the result is kept while the tree
-    lives.
+    """Compute the constant matrices of every joint of a tree.
 
     Args:
         tree: the robot.
@@ -54,20 +51,14 @@ def fixed_parts(tree: Mechanism) -> tuple[Joint, ...]:
     Returns:
         One entry a joint.
     """
-    if tree not in _PARTS:
-        _PARTS[tree] = tuple(_fixed_parts(tree))
-    return _PARTS[tree]
-
-
-def _fixed_parts(tree: Mechanism) -> list[Joint]:
-    found = []
+    parts = []
     for rotation, offset, inertial in zip(tree.rotation, tree.offset, tree.inertial, strict=True):
         along = rotation.T @ _of_point(rotation[:, 2])
         along[:, LINEAR] = 0.0
         lever = _skew(rotation[:, 2]) @ rotation
         down, up = fixed_motion(rotation, offset), fixed_wrench(rotation, offset)
-        found.append(Joint(down, along, inertial_wrench(inertial), up, lever))
-    return found
+        parts.append(Joint(down, along, inertial_wrench(inertial), up, lever))
+    return tuple(parts)
 
 
 def fixed_motion(rotation: np.ndarray, offset: np.ndarray) -> np.ndarray:
@@ -80,10 +71,10 @@ def fixed_motion(rotation: np.ndarray, offset: np.ndarray) -> np.ndarray:
     Returns:
         The frame's motion over that of the other `(9, 15)`.
     """
-    found = np.zeros((9, 15))
-    found[SPIN, SPIN] = found[ANGULAR, ANGULAR] = rotation.T
-    found[LINEAR] = rotation.T @ _of_point(offset)
-    return found
+    matrix = np.zeros((9, 15))
+    matrix[SPIN, SPIN] = matrix[ANGULAR, ANGULAR] = rotation.T
+    matrix[LINEAR] = rotation.T @ _of_point(offset)
+    return matrix
 
 
 def fixed_wrench(rotation: np.ndarray, offset: np.ndarray) -> np.ndarray:
@@ -96,10 +87,10 @@ def fixed_wrench(rotation: np.ndarray, offset: np.ndarray) -> np.ndarray:
     Returns:
         Force and moment in the other frame, about its origin, over those in this one `(6, 6)`.
     """
-    found = np.zeros((6, 6))
-    found[:3, :3] = found[3:, 3:] = rotation
-    found[3:, :3] = _skew(offset) @ rotation
-    return found
+    matrix = np.zeros((6, 6))
+    matrix[:3, :3] = matrix[3:, 3:] = rotation
+    matrix[3:, :3] = _skew(offset) @ rotation
+    return matrix
 
 
 def inertial_wrench(parameters: np.ndarray) -> np.ndarray:

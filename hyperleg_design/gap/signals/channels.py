@@ -62,8 +62,8 @@ def held(values: np.ndarray, start: np.ndarray) -> np.ndarray:
     """
     known = np.isfinite(values)
     latest = np.maximum.accumulate(np.where(known, np.arange(len(values))[:, None], 0), 0)
-    found = np.take_along_axis(values, latest, 0)
-    return np.where(np.isfinite(found), found, start)
+    values = np.take_along_axis(values, latest, 0)
+    return np.where(np.isfinite(values), values, start)
 
 
 def resampled(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray:

@@ -23,11 +23,11 @@ standing foot are a few per cent of its load off by it, those of one that lands 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hyperleg_design.gap.model import pads
+from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.contact import TOUCHING_FORCE
 from hyperleg_design.gap.signals.nominal_ground import Law, nominal_ground
 from hyperleg_design.gap.signals.signals import Signals
@@ -168,12 +168,9 @@ class Footing:
         )
 
 
-_FOOTINGS: WeakKeyDictionary[Signals, tuple[Footing, ...]] = WeakKeyDictionary()
-
-
+@memoized
 def footings(signals: Signals) -> tuple[Footing, ...]:
-    """Collect every foot of a log with contact forces and a floating base; the result is kept while
-    the signals live.
+    """Collect every foot of a log with contact forces and a floating base.
 
     Args:
         signals: conditioned log.
@@ -181,28 +178,6 @@ def footings(signals: Signals) -> tuple[Footing, ...]:
     Returns:
         The feet.
     """
-    if signals not in _FOOTINGS:
-        _FOOTINGS[signals] = _footings(signals)
-    return _FOOTINGS[signals]
-
-
-def ground_residual(signals: Signals) -> np.ndarray | None:
-    """Compute the logged minus the nominal force of the ground on each foot.
-
-    Args:
-        signals: conditioned log.
-
-    Returns:
-        The residual [N], `(t, 3 f)`, NaN where unknown; None without logged forces.
-    """
-    feet = footings(signals)
-    if not feet:
-        return None
-    one = np.ones(1)
-    return np.concatenate([foot.force - foot.ground(one, one, one)[0] for foot in feet], 1)
-
-
-def _footings(signals: Signals) -> tuple[Footing, ...]:
     from scipy.ndimage import minimum_filter1d
 
     subject, base = signals.subject, signals.base
@@ -257,6 +232,22 @@ def _footings(signals: Signals) -> tuple[Footing, ...]:
             )
         )
     return tuple(found)
+
+
+def ground_residual(signals: Signals) -> np.ndarray | None:
+    """Compute the logged minus the nominal force of the ground on each foot.
+
+    Args:
+        signals: conditioned log.
+
+    Returns:
+        The residual [N], `(t, 3 f)`, NaN where unknown; None without logged forces.
+    """
+    feet = footings(signals)
+    if not feet:
+        return None
+    one = np.ones(1)
+    return np.concatenate([foot.force - foot.ground(one, one, one)[0] for foot in feet], 1)
 
 
 def _loads(signals: Signals, own: np.ndarray, lowest: np.ndarray) -> np.ndarray:

@@ -15,11 +15,10 @@ itself tells the friction: such rest is in no residual, `holding` speaks of it.
 
 from __future__ import annotations
 
-from weakref import WeakKeyDictionary
-
 import numpy as np
 
 from hyperleg_design.gap.model.friction import sliding_share
+from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.limit_cycle import PRESLIDING
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.stop_operator import stop
@@ -29,11 +28,11 @@ NOISES = 8.0
 WIDTH = 0.01
 """Velocity at which friction in a simulation has three quarters of its size [rad/s]; a sign,
 softened below what logs resolve."""
-_SLIDING: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 
 
+@memoized
 def sliding(signals: Signals) -> np.ndarray:
-    """Compute which way each joint slides; the result is kept while `signals` live.
+    """Compute which way each joint slides.
 
     Args:
         signals: conditioned log.
@@ -41,17 +40,15 @@ def sliding(signals: Signals) -> np.ndarray:
     Returns:
         -1 .. 1, `(t, n)`.
     """
-    if signals not in _SLIDING:
-        ways = zip(signals.position.T, presliding(signals).tolist(), strict=True)
-        out = np.clip(2 * np.stack([stop(position, way) for position, way in ways], -1), -1.0, 1.0)
-        if signals.limit_cycle is not None:
-            swings = shaken(signals)
-            out[swings] = sliding_share(
-                signals.velocity[swings], WIDTH, signals.limit_cycle.speed[swings]
-            )
-        out.setflags(write=False)
-        _SLIDING[signals] = out
-    return _SLIDING[signals]
+    ways = zip(signals.position.T, presliding(signals).tolist(), strict=True)
+    out = np.clip(2 * np.stack([stop(position, way) for position, way in ways], -1), -1.0, 1.0)
+    if signals.limit_cycle is not None:
+        swings = shaken(signals)
+        out[swings] = sliding_share(
+            signals.velocity[swings], WIDTH, signals.limit_cycle.speed[swings]
+        )
+    out.setflags(write=False)
+    return out
 
 
 def presliding(signals: Signals) -> np.ndarray:

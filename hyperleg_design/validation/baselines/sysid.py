@@ -197,11 +197,11 @@ def _sequence(sysid: Any, signals: Signals, drives: DriveSet, number: int) -> An
     # A controller holds a target until the next one: the toolbox interpolates, so each is given
     # twice.
     assert signals.target is not None
-    kept = held(signals.target, subject.default)[ticks][:, driven]
+    targets = held(signals.target, subject.default)[ticks][:, driven]
     edge = 1e-6
     when = np.concatenate([[times[0]], np.stack([times[1:] - edge, times[1:]], -1).ravel()])
     control = np.concatenate(
-        [kept[:1], np.stack([kept[:-1], kept[1:]], 1).reshape(-1, kept.shape[1])]
+        [targets[:1], np.stack([targets[:-1], targets[1:]], 1).reshape(-1, targets.shape[1])]
     )
     state = sysid.create_initial_state(
         model, signals.position[ticks[0]], signals.velocity[ticks[0]]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from typing_extensions import override
@@ -16,6 +15,7 @@ from hyperleg_design.gap.effects.kinds import JointEffect
 from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration, Live
@@ -25,7 +25,6 @@ NODES = 5
 one joint's angle."""
 
 Basis = dict[str, tuple[np.ndarray, np.ndarray]]
-_BASES: WeakKeyDictionary[Signals, dict[int, Basis]] = WeakKeyDictionary()
 USUAL = 0.003
 """Usual error of an encoder's zero [rad]."""
 
@@ -76,11 +75,8 @@ class EncoderOffset(JointEffect):
         offset = np.atleast_2d(np.asarray(values, float))[:, 0]
         turns = signals.subject.tree.hinge[joint]
         powers = _waves(offset) if turns else np.stack([offset, offset**2], -1)
-        kept = _BASES.setdefault(signals, {})
-        if joint not in kept:
-            kept[joint] = _basis(signals, joint)
         found = {}
-        for residual_name, (rows, parts) in kept[joint].items():
+        for residual_name, (rows, parts) in _basis(signals, joint).items():
             count = len(signals.subject.joints) if residual_name == "motion" else 6
             found[residual_name] = np.zeros((len(offset), len(signals.time), count))
             found[residual_name][..., rows] = np.tensordot(powers, parts, 1)
@@ -99,6 +95,7 @@ def _waves(offset: np.ndarray) -> np.ndarray:
     )
 
 
+@memoized
 def _basis(signals: Signals, joint: int) -> Basis:
     """By residual: rows that an offset changes, and how, in the functions of the offset
     `(functions, t, rows)`.

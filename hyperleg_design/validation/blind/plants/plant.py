@@ -153,11 +153,11 @@ def columns_of(n: int, m: int) -> dict[str, int]:
     return of_joints | of_motors | {"voltage": 1}
 
 
-def traces_of(kept: Mapping[str, np.ndarray], energy: np.ndarray, step: float) -> list[Trace]:
+def traces_of(columns: Mapping[str, np.ndarray], energy: np.ndarray, step: float) -> list[Trace]:
     """Cut what `b` plants did side by side into their traces.
 
     Args:
-        kept: by field of `Trace`, `(k, b, columns)`.
+        columns: by field of `Trace`, `(k, b, n)`.
         energy: `(k, b)` [J].
         step: between ticks [s].
 
@@ -169,8 +169,8 @@ def traces_of(kept: Mapping[str, np.ndarray], energy: np.ndarray, step: float) -
         Trace(
             time=time,
             energy=energy[:, i],
-            voltage=kept["voltage"][:, i, 0],
-            **{name: values[:, i] for name, values in kept.items() if name != "voltage"},
+            voltage=columns["voltage"][:, i, 0],
+            **{name: values[:, i] for name, values in columns.items() if name != "voltage"},
         )
         for i in range(energy.shape[1])
     ]
