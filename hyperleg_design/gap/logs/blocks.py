@@ -42,7 +42,6 @@ def shortened(rows: int, kept: int) -> str:
         The remark.
     """
     return (
-        f"too long to be held in memory: {kept} of its {rows} rows were read, in blocks at "
-        f"full "
+        f"too long to be held in memory: {kept} of its {rows} rows were read, in blocks at full "
         f"rate spread over the recording"
     )

@@ -55,8 +55,7 @@ def on_the_joints_side(subject: Subject, logs: Sequence[Log]) -> Subject:
     if not scales:
         return subject
     note = (
-        f"{', '.join(scales)}: of the motors, before the gears of the robot's file; told at "
-        f"the "
+        f"{', '.join(scales)}: of the motors, before the gears of the robot's file; told at the "
         f"joints here"
     )
     return dataclasses.replace(subject, motor_scale=scales, notes=(*subject.notes, note))

@@ -141,17 +141,10 @@ def pair_settings(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndar
     Returns:
         Friction `(3,)`, `solref` `(2,)`, and the number of contact dimensions.
     """
-    floor = floor_geoms(model)
-    if not floor:
-        return (
-            model.geom_friction[geom].copy(),
-            model.geom_solref[geom].copy(),
-            int(model.geom_condim[geom]),
-        )
-    other = floor[0]
+    other = next(iter(floor_geoms(model)), geom)
     ranks = model.geom_priority[geom], model.geom_priority[other]
-    if ranks[0] != ranks[1]:
-        chosen = geom if ranks[0] > ranks[1] else other
+    if other == geom or ranks[0] != ranks[1]:
+        chosen = other if ranks[0] < ranks[1] else geom
         return (
             model.geom_friction[chosen].copy(),
             model.geom_solref[chosen].copy(),
