@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,15 +19,12 @@ from hyperleg_design.gap.inference import noise_model, nuisance, nuisance_traces
 from hyperleg_design.gap.inference.channels.channel import Channel
 from hyperleg_design.gap.inference.channels.discrepancy import MOTORS, load, shapes
 from hyperleg_design.gap.inference.endogenous import Factor
-from hyperleg_design.gap.inference.samples import gather
+from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.samples import Samples, gather
 from hyperleg_design.gap.signals import filtering, resting
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.fit import Cause
-    from hyperleg_design.gap.inference.rules import InferenceRules
-    from hyperleg_design.gap.inference.samples import Samples
-    from hyperleg_design.gap.signals.filtering import FilteredLog
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.filtering import FilteredLog
+from hyperleg_design.gap.signals.signals import Signals
 
 MOST_BANDS = 5
 """Bands of a channel, see `filtering.EDGES`."""
@@ -140,9 +136,7 @@ class _Set:
 
 
 def evidence_of(
-    tests: Sequence[Signals],
-    references: Sequence[Signals],
-    rules: InferenceRules,
+    tests: Sequence[Signals], references: Sequence[Signals], rules: InferenceRules
 ) -> Evidence:
     """Channels of all logs.
 

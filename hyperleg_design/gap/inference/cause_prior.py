@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import log_ndtr
 
 from hyperleg_design.gap.effects import WEIGHED
-from hyperleg_design.gap.inference.hypothesis import EVERYWHERE
+from hyperleg_design.gap.inference.assembly import Evidence
+from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis
 from hyperleg_design.gap.inference.prior_odds import prior_odds
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.assembly import Evidence
-    from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
-    from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.rules import InferenceRules
 
 
 def log_prior(

@@ -11,16 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.fit import Cause
-    from hyperleg_design.gap.inference.samples import Samples
-    from hyperleg_design.gap.signals.filtering import FilteredLog
+from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.inference.samples import Samples
+from hyperleg_design.gap.signals.filtering import FilteredLog
 
 
 def after(samples: Samples, causes: Sequence[tuple[Cause, np.ndarray]]) -> Samples:

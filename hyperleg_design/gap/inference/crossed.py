@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.effects import UNLISTED
 from hyperleg_design.gap.inference.assembly import Evidence
-from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.channels.channel import Channel
-    from hyperleg_design.gap.inference.channels.scales import Scales
-    from hyperleg_design.gap.inference.hypothesis import Hypothesis
-    from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.channels.channel import Channel
+from hyperleg_design.gap.inference.channels.scales import Scales
+from hyperleg_design.gap.inference.hypothesis import Hypothesis, Stack, reduced, shifted, solve
+from hyperleg_design.gap.inference.rules import InferenceRules
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,18 +12,15 @@ and where it is as clearly larger than a usual calibration error u: f >= u + 1.2
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS, UNLISTED
+from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.cause_prior import usual_error
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.effects.effect import Effect
-    from hyperleg_design.gap.inference.search import Search
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.inference.search import Search
+from hyperleg_design.gap.model.subject import Subject
 
 OFTEN = 1.28
 """Standard deviations above which nine in ten of a normal distribution lie."""

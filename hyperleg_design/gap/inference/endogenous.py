@@ -12,18 +12,15 @@ floor is high.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
+from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.placing import is_measured
+from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.inference.shrinking import Shrinking, shrinking
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.effects.effect import Effect
-    from hyperleg_design.gap.inference.samples import Samples
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 FAINT = 0.5
 """Believed torque over the floor, root mean square, up to which a larger torque gains nothing; from

@@ -68,10 +68,7 @@ class Cause:
 
 
 def within_bounds(
-    matrix: np.ndarray,
-    right: np.ndarray,
-    low: np.ndarray,
-    high: np.ndarray,
+    matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
     """Least squares within bounds.
 
@@ -90,10 +87,8 @@ def within_bounds(
         return phi if ((phi >= low) & (phi <= high)).all() else _within(matrix, right, low, high)
     phi = np.where(free, 0.0, low)
     if free.any():
-        inner, rest = (
-            matrix[np.ix_(free, free)],
-            right[free] - matrix[np.ix_(free, ~free)] @ phi[~free],
-        )
+        inner = matrix[np.ix_(free, free)]
+        rest = right[free] - matrix[np.ix_(free, ~free)] @ phi[~free]
         found = np.linalg.solve(inner, rest)
         if (found < low[free]).any() or (found > high[free]).any():
             found = _within(inner, rest, low[free], high[free])

@@ -9,18 +9,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hyperleg_design.gap.inference.assembly import Evidence
+from hyperleg_design.gap.inference.crossed import Prediction
+from hyperleg_design.gap.inference.hypothesis import Hypothesis
+from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.unlisted import makes_noise
 from hyperleg_design.gap.signals.signals import RESIDUALS
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.assembly import Evidence
-    from hyperleg_design.gap.inference.crossed import Prediction
-    from hyperleg_design.gap.inference.hypothesis import Hypothesis
-    from hyperleg_design.gap.inference.rules import InferenceRules
 
 COUNTS = 0.25
 """Channels count for the gap from this share of the largest excess of any (assumed)."""

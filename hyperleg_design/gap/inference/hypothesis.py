@@ -6,21 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.special import erfcx
 
+from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.crossing import Crossing
-from hyperleg_design.gap.inference.fit import within_bounds
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.assembly import Evidence
-    from hyperleg_design.gap.inference.channels.scales import Scales
-    from hyperleg_design.gap.inference.endogenous import Factor
-    from hyperleg_design.gap.inference.fit import Cause
-    from hyperleg_design.gap.inference.rules import InferenceRules
-    from hyperleg_design.gap.inference.shrinking import Shrinking
+from hyperleg_design.gap.inference.channels.scales import Scales
+from hyperleg_design.gap.inference.endogenous import Factor
+from hyperleg_design.gap.inference.fit import Cause, within_bounds
+from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.shrinking import Shrinking
 
 Name = tuple[str, str, bool]
 """Effect, location, and whether it acts in all logs, references included."""

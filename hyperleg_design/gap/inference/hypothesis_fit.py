@@ -12,11 +12,14 @@ import numpy as np
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.families import IN_DRIVES
 from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause_prior import log_prior
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scale_fit import STEPS, fitted
+from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.composed import after
 from hyperleg_design.gap.inference.endogenous import Factor
+from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import (
     Candidate,
     Hypothesis,
@@ -26,15 +29,11 @@ from hyperleg_design.gap.inference.hypothesis import (
     shifted,
     solve,
 )
+from hyperleg_design.gap.inference.promises import Promise
+from hyperleg_design.gap.inference.rules import InferenceRules
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from hyperleg_design.gap.inference.assembly import Evidence
-    from hyperleg_design.gap.inference.channels.scales import Scales
-    from hyperleg_design.gap.inference.fit import Cause
-    from hyperleg_design.gap.inference.promises import Promise
-    from hyperleg_design.gap.inference.rules import InferenceRules
 
 CLOSE = 0.02
 """Step of a nonlinear fit, over usual sizes, from which it has converged [-]."""

@@ -10,16 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.placing import ROBOT, driven_motors, motor_strength
 from hyperleg_design.gap.effects.usual import lateness, least_friction
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.model.subject import Subject
 
 FORCES_SCALED, OF_FORCES = "contact_scale", 0.01
 """Share by which the forces under a foot are told too large or too small (assumed: load cells in

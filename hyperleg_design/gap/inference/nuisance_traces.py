@@ -32,10 +32,13 @@ from hyperleg_design.gap.inference.nuisance import (
     TURNOVER,
     UNLISTED,
     WAYS,
+    NuisanceParameter,
     turning,
 )
 from hyperleg_design.gap.model import friction, pads
 from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.filtering import FilteredLog
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.gap.signals.stop_operator import stop
 from hyperleg_design.gap.signals.transmission import turned
@@ -43,10 +46,6 @@ from hyperleg_design.simulation.drives.actuation import friction_damping
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from hyperleg_design.gap.inference.nuisance import NuisanceParameter
-    from hyperleg_design.gap.signals.filtering import FilteredLog
-    from hyperleg_design.gap.signals.signals import Signals
 
 
 def traces(
@@ -64,12 +63,7 @@ def traces(
     modelled = replace(
         signals, believed=np.where(np.isfinite(needed), needed, signals.believed), target=None
     )
-    sources = {
-        LOGGED: signals,
-        NEEDED: modelled,
-        STEERED: _steered(signals),
-        CALIBRATED: modelled,
-    }
+    sources = {LOGGED: signals, NEEDED: modelled, STEERED: _steered(signals), CALIBRATED: modelled}
     bare = {
         joint
         for joint, coulomb in zip(signals.subject.joints, signals.subject.coulomb, strict=True)
@@ -191,10 +185,8 @@ def _told(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
         )
     if signals.pad_force is None:
         return {}
-    force, rotation = (
-        np.nan_to_num(signals.pad_force),
-        None if signals.base is None else signals.base.rotation,
-    )
+    force = np.nan_to_num(signals.pad_force)
+    rotation = None if signals.base is None else signals.base.rotation
     own = np.array([subject.feet[p.foot] == one.location for p in subject.pads])
     if one.effect == FORCES_LATE:
         later = -one.spread * np.gradient(force, signals.step, axis=0)
@@ -240,11 +232,9 @@ def _swung(signals: Signals, joint: str, place: int) -> dict[str, np.ndarray]:
     j = subject.joints.index(joint)
     if signals.limit_cycle is None or not signals.limit_cycle.speed[:, j].any():
         return {}
-    rows, speed, width = (
-        np.zeros_like(signals.position),
-        signals.velocity[:, j],
-        subject.friction_speed[j],
-    )
+    rows = np.zeros_like(signals.position)
+    speed = signals.velocity[:, j]
+    width = subject.friction_speed[j]
     swing = signals.limit_cycle.speed[:, j]
     rows[:, j] = subject.coulomb[j] * (
         friction.turned(speed, width, SWINGS[place] * swing) - friction.turned(speed, width, swing)

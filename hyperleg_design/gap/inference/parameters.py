@@ -4,16 +4,12 @@ use.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.diagnosis import Value
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.fit import Cause
-    from hyperleg_design.gap.model.subject import Subject
 
 NORMAL = 1.96
 """Standard deviations of a normal distribution's 95 % interval."""

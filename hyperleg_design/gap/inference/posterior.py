@@ -13,21 +13,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.effects import UNLISTED
+from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause_prior import beyond_usual
-from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Name
+from hyperleg_design.gap.inference.gap_size import GapSize
+from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis, Name
+from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.search import Result
 from hyperleg_design.gap.inference.unlisted import unlisted
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.assembly import Evidence
-    from hyperleg_design.gap.inference.gap_size import GapSize
-    from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
-    from hyperleg_design.gap.inference.rules import InferenceRules
-    from hyperleg_design.gap.inference.search import Result
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,14 +4,10 @@ that their effects state (`Effect.odds`).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.inference.fit import Cause
 
 PER_PARAMETER = 0.5
 """Log prior odds against each parameter, beside what the marginal likelihood takes for it."""

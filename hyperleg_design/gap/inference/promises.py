@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.crossing import Crossing
+from hyperleg_design.gap.inference.channels.scales import Scales
+from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import Name, Solution, Stack, solve
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.assembly import Evidence
-    from hyperleg_design.gap.inference.channels.scales import Scales
-    from hyperleg_design.gap.inference.fit import Cause
-    from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.rules import InferenceRules
 
 LARGEST = 10.0
 """Size of a start's trace that is tried, over the start's own [-]."""

@@ -9,15 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.gap.signals.filtering import traced
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.filtering import FilteredLog, Row
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.filtering import FilteredLog, Row, traced
+from hyperleg_design.gap.signals.signals import Signals
 
 FOLDS = 5
 MOST_PARTS = 20

@@ -6,20 +6,17 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import zip_longest
-from typing import TYPE_CHECKING, TypeAlias, TypeVar
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
+from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.inference.endogenous import factor
 from hyperleg_design.gap.inference.fit import Cause
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.effects.effect import Effect
-    from hyperleg_design.gap.inference.samples import Samples
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
-
+from hyperleg_design.gap.inference.samples import Samples
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 
 SHOWN = 0.02
 """Root mean square of a trace over the floor, at its usual size in the group where it shows most,

@@ -6,29 +6,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.crossing import Crossing
+from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.endogenous import Factor
-from hyperleg_design.gap.inference.hypothesis import (
-    EVERYWHERE,
-    Candidate,
-    Hypothesis,
-    Name,
-    Stack,
-)
+from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis, Name, Stack
 from hyperleg_design.gap.inference.hypothesis_fit import CLOSE, HypothesisFit, eased
 from hyperleg_design.gap.inference.promises import Promise, Promises
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.assembly import Evidence
-    from hyperleg_design.gap.inference.channels.scales import Scales
-    from hyperleg_design.gap.inference.fit import Cause
-    from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.rules import InferenceRules
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,9 +139,7 @@ class Search:
         chosen = [name for name in promising if name not in flexible][: rules.candidates]
         chosen += flexible[: rules.flexible]
         fitted = screen.spread(
-            lambda name: self.best_of(promises[name][: rules.starts], current),
-            chosen,
-            self.threads,
+            lambda name: self.best_of(promises[name][: rules.starts], current), chosen, self.threads
         )
         hypotheses = [one for one in fitted if one is not None]
         hypotheses += [

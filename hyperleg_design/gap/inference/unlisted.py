@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from hyperleg_design.gap.inference.channels.scales import ABSENT
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.channels.channel import Channel
-    from hyperleg_design.gap.inference.channels.scales import Scales
-    from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.channels.channel import Channel
+from hyperleg_design.gap.inference.channels.scales import ABSENT, Scales
+from hyperleg_design.gap.inference.rules import InferenceRules
 
 
 def unlisted(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:

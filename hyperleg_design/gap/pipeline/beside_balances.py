@@ -6,23 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from hyperleg_design.gap.inference.detectors.imu_offset import OFFSET, PLACE
+from hyperleg_design.gap.inference.detectors.imu_offset import OFFSET, PLACE, Offset
 from hyperleg_design.gap.inference.detectors.sinking import SINKS
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.inference.detectors.slipping import SLIPS
-from hyperleg_design.gap.results.diagnosis import (
-    MOST_RIVALS,
-    Diagnosis,
-    Named,
-    Place,
-    Shrinkage,
-)
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.detectors.imu_offset import Offset
-    from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
+from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
+from hyperleg_design.gap.results.diagnosis import MOST_RIVALS, Diagnosis, Named, Place, Shrinkage
 
 APART = (OFFSET, SLIPS, SINKS)
 """Shapes by which such causes are known."""

@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.checks.check import Check, check_log
@@ -18,16 +17,14 @@ from hyperleg_design.gap.inference.detectors.sinking import sinks
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.inference.detectors.slipping import slips
 from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.pipeline.beside_balances import of_feet, of_imu
 from hyperleg_design.gap.pipeline.judged import judge_signals
 from hyperleg_design.gap.results.diagnosis import Diagnosis
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 
 def diagnose(

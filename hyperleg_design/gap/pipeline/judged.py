@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design import provenance
+from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.effects import UNLISTED, WEIGHED
 from hyperleg_design.gap.experiments import experiment
 from hyperleg_design.gap.inference.assembly import Evidence, evidence_of
 from hyperleg_design.gap.inference.crossed import predicted
 from hyperleg_design.gap.inference.detectable import detectable
+from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.gap_size import GapSize
+from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
 from hyperleg_design.gap.inference.parameters import intervals
 from hyperleg_design.gap.inference.posterior import Posterior, expanded, posterior_of
+from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.search import Result, Search
 from hyperleg_design.gap.results.diagnosis import (
     LEAST_SHARE,
@@ -28,14 +32,7 @@ from hyperleg_design.gap.results.diagnosis import (
     Shrinkage,
 )
 from hyperleg_design.gap.results.finding import NOTE, WARNING
-from hyperleg_design.gap.signals.signals import RESIDUALS
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.checks.check import Check
-    from hyperleg_design.gap.inference.fit import Cause
-    from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
-    from hyperleg_design.gap.inference.rules import InferenceRules
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import RESIDUALS, Signals
 
 CLEAR = 2.0
 """Standard deviations from its null from which a place of an effect at all places is named."""

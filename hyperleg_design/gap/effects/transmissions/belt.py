@@ -27,7 +27,6 @@ the load turns round, s = w / 2 tanh(u / (c rms u)); `coasting` mixes the two.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -42,10 +41,8 @@ from hyperleg_design.gap.effects.series import (
 from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.machine import rotor
 from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.transmission import turned
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
 
 BAND = 0.2
 """Of the transmitted torque that stretches a belt, over the log's rate: 40 Hz at 200 Hz."""
@@ -150,10 +147,8 @@ def given(signals: Signals, motor: int, *, rubs: bool = True) -> np.ndarray:
     """
     kept = _OWN.setdefault(signals, {})
     if (motor, rubs) not in kept:
-        spun, band = (
-            signals.acceleration @ signals.subject.joint_from_motor[:, motor],
-            min(BEHIND_BAND, BAND / signals.step),
-        )
+        spun = signals.acceleration @ signals.subject.joint_from_motor[:, motor]
+        band = min(BEHIND_BAND, BAND / signals.step)
         lost = 0.0 if rubs else band_limited(_friction(signals, motor), signals.step, band)
         kept[motor, rubs] = _passed_on(signals, motor, spun, band) - lost
     return kept[motor, rubs]
@@ -244,13 +239,7 @@ def trace(
             x - np.multiply.outer(rate[rows], share) for x, rate in zip(logged, rates, strict=True)
         )
         beyond = rigid.inverse_dynamics(
-            subject,
-            position,
-            velocity,
-            acceleration,
-            signals.base,
-            rotors=False,
-            joints=limbs,
+            subject, position, velocity, acceleration, signals.base, rotors=False, joints=limbs
         )
         beyond -= _rotorless(signals)[:, limbs]
         found["motion"][rows[:, None], :, np.array(limbs)] += (

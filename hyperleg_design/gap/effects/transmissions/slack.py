@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -12,9 +11,7 @@ from hyperleg_design.gap.effects.series import band_limited
 from hyperleg_design.gap.effects.transmissions.belt import BAND, CHOSEN, frictionless, load
 from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.model.machine import rotor
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 RESTITUTION = 0.3
 """Speed after over speed before a rotor hits the end of its dead zone; assumed: gears and cords
@@ -111,10 +108,8 @@ def _rubbing(kicks: list[float], signals: Signals, motor: int, half: float) -> l
     subject, step = signals.subject, signals.step
     share = np.abs(subject.motor_from_joint[motor])
     slowed = step / _inertia(signals, motor)
-    drops, keeps = (
-        (float(share @ subject.coulomb) * slowed).tolist(),
-        np.exp(-float(share**2 @ subject.viscous) * slowed).tolist(),
-    )
+    drops = (float(share @ subject.coulomb) * slowed).tolist()
+    keeps = np.exp(-float(share**2 @ subject.viscous) * slowed).tolist()
     turning = np.nan_to_num(signals.velocity @ subject.joint_from_motor[:, motor]).tolist()
     place, speed = half if kicks[0] > 0 else -half, 0.0
     found = []

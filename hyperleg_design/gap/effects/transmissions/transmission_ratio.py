@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -21,21 +21,14 @@ from hyperleg_design.gap.effects.families import (
 from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.effects.placing import (
-    SIDES,
-    at_motor,
-    given,
-    motor_velocity,
-)
+from hyperleg_design.gap.effects.placing import SIDES, at_motor, given, motor_velocity
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model import friction
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.alteration import Alteration, Live
 from hyperleg_design.simulation.drives.machine import Machine
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
 
 
 class TransmissionRatio(MotorEffect):

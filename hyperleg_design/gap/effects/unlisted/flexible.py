@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -13,12 +13,10 @@ from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.kinds import JointEffect
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import joint_strength
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.simulation.alteration import Alteration
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.simulation.alteration import Alteration
 
 SHARE = 0.003
 """Usual size of one shape over the torque that the joint is made for [-]: so small that a shape

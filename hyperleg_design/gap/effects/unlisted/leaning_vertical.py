@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -14,13 +14,11 @@ from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import ROBOT
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.rigid import inverse_dynamics
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.simulation.alteration import Alteration
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.simulation.alteration import Alteration
 
 LEVEL = 0.0035
 """Usual angle of a base against the vertical [rad]: a fifth of a degree (assumed)."""

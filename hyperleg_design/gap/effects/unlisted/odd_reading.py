@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.needed import needed
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.unlisted.flexible import Flexible, parameters
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.effects.parameter import Parameter
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 
 ORDERS = (1, 2, 3, 4)
 """Periods of the error in one turn [-] (assumed: eccentric discs, and scales that are read from

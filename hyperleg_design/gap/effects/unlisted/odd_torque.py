@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import at_joint
 from hyperleg_design.gap.effects.unlisted.flexible import Flexible, parameters
 from hyperleg_design.gap.effects.unlisted.inputs import INPUTS, SHAPES, functions
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.effects.parameter import Parameter
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 
 class OddTorque(Flexible):

@@ -3,30 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
+from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import at_joint, motor_position
 from hyperleg_design.gap.effects.unlisted.flexible import Flexible, parameters
 from hyperleg_design.gap.effects.unlisted.inputs import relative_load
 from hyperleg_design.gap.effects.waves import fitted_waves
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.effects.parameter import Parameter
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
 
 TURNS = np.arange(1.0, 49.0)
 """Periods a turn of the motor that are tried [-]."""
 FASTEST = 12.0
 """Frequency in time up to which waves are looked for [Hz] (assumed)."""
-INPUTS = {
-    "motor": "in proportion to the load, with the angle of its motor",
-    "time": "with time",
-}
+INPUTS = {"motor": "in proportion to the load, with the angle of its motor", "time": "with time"}
 FEWEST = 64
 """Known ticks that tell waves."""
 

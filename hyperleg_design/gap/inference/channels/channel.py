@@ -17,7 +17,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg.lapack import dtrtrs
@@ -25,9 +24,7 @@ from scipy.linalg.lapack import dtrtrs
 from hyperleg_design.gap.inference.channels.likelihood import Likelihood
 from hyperleg_design.gap.inference.channels.scales import Scales, log_prior_of_scales
 from hyperleg_design.gap.inference.channels.spectrum import Spectrum
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.rules import InferenceRules
 
 NOISES = 3
 """Noises of a channel whose spectra are kept."""

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.channels.channel import Channel, Residual
-    from hyperleg_design.gap.inference.channels.scales import Scales
+from hyperleg_design.gap.inference.channels.channel import Channel, Residual
+from hyperleg_design.gap.inference.channels.scales import Scales
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,14 +7,10 @@ variance grows there.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
 
 SLOW, FAST = 0.3, 2.0
 """Speeds over which friction of one direction fades [rad/s] (assumed)."""

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg.lapack import dtrtrs
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.channels.spectrum import Spectrum
+from hyperleg_design.gap.inference.channels.spectrum import Spectrum
 
 
 @dataclass(frozen=True, eq=False)

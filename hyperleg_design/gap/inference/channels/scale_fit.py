@@ -6,16 +6,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.inference.channels.channel import Channel, Residual
+from hyperleg_design.gap.inference.channels.likelihood import Likelihood
 from hyperleg_design.gap.inference.channels.scales import ABSENT, Scales
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.channels.channel import Channel, Residual
-    from hyperleg_design.gap.inference.channels.likelihood import Likelihood
-    from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.rules import InferenceRules
 
 STEPS = (1.2, 0.5, 0.2)
 """Steps of the search for a scale's logarithm, each halved about [-]."""

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.rules import DiscrepancyRules
+from hyperleg_design.gap.inference.rules import DiscrepancyRules
 
 ABSENT = 1e-3
 """Logarithm of `Scales.new` up to which nothing unlisted acts [-]."""

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,10 +22,8 @@ from hyperleg_design.gap.inference.rules import CauseRules
 from hyperleg_design.gap.model.mechanism import quaternion_rotation
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.base_motion import known, on_ticks, orientation, spin
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.smoothing import smooth
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
 
 PLACE = ImuBias.identifier, IMU
 OFFSET = "offset"
@@ -104,10 +101,8 @@ def imu_offset(
     if references:
         healthy, unsure = _together([_compared(one) for one in references])
         told = np.isfinite(healthy)
-        mean, error = (
-            np.where(told, mean - healthy, mean),
-            np.where(told, np.hypot(error, unsure), error),
-        )
+        mean = np.where(told, mean - healthy, mean)
+        error = np.where(told, np.hypot(error, unsure), error)
     over = np.abs(mean) / USUAL
     clear = np.isfinite(mean) & (over > beyond) & (np.abs(mean) > CERTAIN * error)
     if not clear.any():

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,9 +17,7 @@ from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoo
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, Footing, footings
 from hyperleg_design.gap.signals.nominal_ground import Law
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 EFFECT = GroundCompliance.identifier
 SINKS = "sinks"

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,9 +19,7 @@ from hyperleg_design.gap.effects.ground.ground_friction import USUAL, GroundFric
 from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoot
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, footings
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import Signals
 
 EFFECT = GroundFriction.identifier
 SLIPS = "slips"
