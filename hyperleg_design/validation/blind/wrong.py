@@ -81,9 +81,6 @@ class Size:
     unit: str
     smallest: float
     largest: float
-    relative: str = ""
-    """Nominal value of the place that the size multiplies, such as `coulomb` of the joint; empty
-    where absolute."""
 
 
 SIZES: dict[str, Size] = {

@@ -27,8 +27,6 @@ the load turns round, s = w / 2 tanh(u / (c rms u)); `coasting` mixes the two.
 
 from __future__ import annotations
 
-from weakref import WeakKeyDictionary
-
 import numpy as np
 
 from hyperleg_design.gap.effects.placing import at_motor, motor_velocity
@@ -40,6 +38,7 @@ from hyperleg_design.gap.effects.series import (
 )
 from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.machine import rotor
+from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.transmission import turned
@@ -56,12 +55,8 @@ BRISTLES = 3e-3
 """Way over which a joint behind its belt turns its friction over [rad]; assumed: as well as its
 place is known."""
 
-_LOADS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
-_GIVEN: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
-_OWN: WeakKeyDictionary[Signals, dict[tuple[int, bool], np.ndarray]] = WeakKeyDictionary()
-_ROTORLESS: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 
-
+@memoized
 def load(signals: Signals, motor: int) -> np.ndarray:
     """Torque that the joints need through one motor's belt, on its side of M `(t,)` [Nm].
 
@@ -72,16 +67,13 @@ def load(signals: Signals, motor: int) -> np.ndarray:
     Returns:
         The torque `(t,)` [Nm].
     """
-    kept = _LOADS.setdefault(signals, {})
-    if motor not in kept:
-        subject = signals.subject
-        needed = signals.rigid - signals.acceleration @ subject.armature.T
-        kept[motor] = band_limited(
-            applied(subject.motor_from_joint[motor : motor + 1], needed)[:, 0],
-            signals.step,
-            BAND / signals.step,
-        )
-    return kept[motor]
+    subject = signals.subject
+    needed = signals.rigid - signals.acceleration @ subject.armature.T
+    return band_limited(
+        applied(subject.motor_from_joint[motor : motor + 1], needed)[:, 0],
+        signals.step,
+        BAND / signals.step,
+    )
 
 
 def frictionless(signals: Signals, motor: int) -> np.ndarray:
@@ -109,6 +101,7 @@ def _friction(signals: Signals, motor: int) -> np.ndarray:
     )[:, 0]
 
 
+@memoized
 def transmitted(signals: Signals, motor: int) -> np.ndarray:
     """Torque that a motor gives its belt, its own torque less what its rotor takes, where its speed
     is logged; else `load` `(t,)` [Nm].
@@ -125,15 +118,11 @@ def transmitted(signals: Signals, motor: int) -> np.ndarray:
         or not np.isfinite(signals.residual["transmission"][:, motor]).any()
     ):
         return load(signals, motor)
-    kept = _GIVEN.setdefault(signals, {})
-    if motor not in kept:
-        spin = signals.residual["transmission"][:, motor] + motor_velocity(signals, motor)
-        kept[motor] = _passed_on(
-            signals, motor, first_derivative(spin, signals.step), BAND / signals.step
-        )
-    return kept[motor]
+    spin = signals.residual["transmission"][:, motor] + motor_velocity(signals, motor)
+    return _passed_on(signals, motor, first_derivative(spin, signals.step), BAND / signals.step)
 
 
+@memoized
 def given(signals: Signals, motor: int, *, rubs: bool = True) -> np.ndarray:
     """Torque that a motor gives its belt, where positions are those of the rotors.
 
@@ -145,13 +134,10 @@ def given(signals: Signals, motor: int, *, rubs: bool = True) -> np.ndarray:
     Returns:
         The torque `(t,)` [Nm].
     """
-    kept = _OWN.setdefault(signals, {})
-    if (motor, rubs) not in kept:
-        spun = signals.acceleration @ signals.subject.joint_from_motor[:, motor]
-        band = min(BEHIND_BAND, BAND / signals.step)
-        lost = 0.0 if rubs else band_limited(_friction(signals, motor), signals.step, band)
-        kept[motor, rubs] = _passed_on(signals, motor, spun, band) - lost
-    return kept[motor, rubs]
+    spun = signals.acceleration @ signals.subject.joint_from_motor[:, motor]
+    band = min(BEHIND_BAND, BAND / signals.step)
+    lost = 0.0 if rubs else band_limited(_friction(signals, motor), signals.step, band)
+    return _passed_on(signals, motor, spun, band) - lost
 
 
 def _passed_on(signals: Signals, motor: int, spun: np.ndarray, band: float) -> np.ndarray:
@@ -250,14 +236,11 @@ def trace(
     return found
 
 
+@memoized
 def _rotorless(signals: Signals) -> np.ndarray:
     """Torque that the logged motion needs, without rotors `(t, n)` [Nm]."""
-    if signals not in _ROTORLESS:
-        motion = signals.position, signals.velocity, signals.acceleration
-        _ROTORLESS[signals] = rigid.inverse_dynamics(
-            signals.subject, *motion, signals.base, rotors=False
-        )
-    return _ROTORLESS[signals]
+    motion = signals.position, signals.velocity, signals.acceleration
+    return rigid.inverse_dynamics(signals.subject, *motion, signals.base, rotors=False)
 
 
 def _rubbed(signals: Signals, moved: np.ndarray, share: np.ndarray) -> np.ndarray:

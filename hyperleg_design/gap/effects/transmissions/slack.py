@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from hyperleg_design.gap.effects.series import band_limited
 from hyperleg_design.gap.effects.transmissions.belt import BAND, CHOSEN, frictionless, load
 from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.model.machine import rotor
+from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.signals import Signals
 
 RESTITUTION = 0.3
@@ -21,7 +21,6 @@ CROSSING, CROSSING_BAND = 0.8, 0.15
 over the log's rate (assumed)."""
 LEAST_SHARE = 1e-3
 """Of the largest inertia of a joint over a log, at least, where its posture is not known."""
-_INERTIAS: WeakKeyDictionary[Signals, dict[int, np.ndarray]] = WeakKeyDictionary()
 
 
 def slack(
@@ -124,14 +123,13 @@ def _rubbing(kicks: list[float], signals: Signals, motor: int, half: float) -> l
     return found
 
 
+@memoized
 def _inertia(signals: Signals, motor: int) -> np.ndarray:
     """Inertia of the joints that a motor moves, at the motor, all others held `(t,)` [kg m^2]."""
-    kept = _INERTIAS.setdefault(signals, {})
-    if motor not in kept:
-        share = signals.subject.motor_from_joint[motor]
-        (needed,) = rigid.accelerating(signals.subject, signals.position, [share], rotors=False)
-        kept[motor] = np.asarray(np.nan_to_num(needed) @ share)
-    return np.maximum(kept[motor], LEAST_SHARE * kept[motor].max())
+    share = signals.subject.motor_from_joint[motor]
+    (needed,) = rigid.accelerating(signals.subject, signals.position, [share], rotors=False)
+    inertia = np.asarray(np.nan_to_num(needed) @ share)
+    return np.maximum(inertia, LEAST_SHARE * inertia.max())
 
 
 def _rotor_alone(signals: Signals, motor: int) -> np.ndarray:

@@ -6,7 +6,6 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from typing_extensions import override
@@ -24,6 +23,7 @@ from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import SIDES, at_motor, given, motor_velocity
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model import friction
+from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.transmission import turned
@@ -130,34 +130,28 @@ def _other_friction(signals: Signals, motor: int, farther: np.ndarray) -> np.nda
 
 NODE = 0.1
 """Share by which joints are moved for `_elsewhere`."""
-_MOVED: WeakKeyDictionary[Signals, dict[int, dict[str, np.ndarray]]] = WeakKeyDictionary()
 
 
+@memoized
 def _elsewhere(signals: Signals, motor: int) -> dict[str, np.ndarray]:
     """What the motion needs more where a motor's share of it is larger, in that share and its
     square `(2, t, rows)`, by residual.
     """
-    kept = _MOVED.setdefault(signals, {})
-    if motor not in kept:
-        subject = signals.subject
-        own = np.outer(subject.joint_from_motor[:, motor], subject.motor_from_joint[motor])
-        here, there = as_logged(signals), []
-        for node in (NODE, -NODE):
-            moved = (
-                values + node * values @ own
-                for values in (signals.position, signals.velocity, signals.acceleration)
-            )
-            there.append(needed(signals, *moved, rotors=False))
-            there[-1]["motion"] = (
-                there[-1]["motion"] + node * (signals.position @ own) * subject.spring
-            )
-        kept[motor] = {}
-        for residual_name, now in here.items():
-            more, less = there[0][residual_name] - now, there[1][residual_name] - now
-            kept[motor][residual_name] = np.stack(
-                [(more - less) / (2 * NODE), (more + less) / (2 * NODE**2)]
-            )
-    return kept[motor]
+    subject = signals.subject
+    own = np.outer(subject.joint_from_motor[:, motor], subject.motor_from_joint[motor])
+    there = []
+    for node in (NODE, -NODE):
+        moved = (
+            values + node * values @ own
+            for values in (signals.position, signals.velocity, signals.acceleration)
+        )
+        there.append(needed(signals, *moved, rotors=False))
+        there[-1]["motion"] = there[-1]["motion"] + node * (signals.position @ own) * subject.spring
+    found = {}
+    for residual_name, now in as_logged(signals).items():
+        more, less = there[0][residual_name] - now, there[1][residual_name] - now
+        found[residual_name] = np.stack([(more - less) / (2 * NODE), (more + less) / (2 * NODE**2)])
+    return found
 
 
 @dataclass(frozen=True, eq=False)

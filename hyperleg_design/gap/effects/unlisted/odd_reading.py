@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import ClassVar
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from typing_extensions import override
@@ -12,6 +11,7 @@ from typing_extensions import override
 from hyperleg_design.gap.effects.needed import needed
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.unlisted.flexible import Flexible, parameters
+from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 
@@ -21,10 +21,6 @@ several sides)."""
 USUAL = 0.001
 """Usual size of one shape [rad], as small as `flexible.SHARE`."""
 INPUTS = {"position": "that repeats with its angle", "time": "that grows with time"}
-
-_TRACES: WeakKeyDictionary[Signals, dict[tuple[int, str], dict[str, np.ndarray]]] = (
-    WeakKeyDictionary()
-)
 
 
 class OddReading(Flexible):
@@ -50,15 +46,13 @@ class OddReading(Flexible):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         joint, name = signals.subject.joints.index(location), self.input_of(values)
         settings = np.atleast_2d(np.asarray(values, float))
-        known = _TRACES.setdefault(signals, {})
-        if (joint, name) not in known:
-            known[joint, name] = _of_shapes(signals, joint, name)
         return {
             residual: np.tensordot(settings[:, : len(traces)], traces, 1)
-            for residual, traces in known[joint, name].items()
+            for residual, traces in _of_shapes(signals, joint, name).items()
         }
 
 
+@memoized
 def _of_shapes(signals: Signals, joint: int, name: str) -> dict[str, np.ndarray]:
     """What each shape leaves, over its size `(shapes, t, rows)` a residual."""
     plain = needed(signals, signals.position)
