@@ -11,21 +11,17 @@ which `nuisance` cannot express.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
-
 import numpy as np
 
 from hyperleg_design.gap.effects.placing import joint_strength
+from hyperleg_design.gap.inference.rules import NoiseRules
 from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.filtering import Band, FilteredLog
 from hyperleg_design.gap.signals.ground import footings
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.stop_operator import stop
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.inference.rules import NoiseRules
-    from hyperleg_design.gap.signals.filtering import Band, FilteredLog
-    from hyperleg_design.gap.signals.signals import Signals
 
 NEAR = 0.5
 """Time over which the size of a load is averaged [s]."""
@@ -43,9 +39,6 @@ FEWEST = 64
 LEAST = 1e-4
 """Floor over the torque that a joint is made for, at least: what single precision and rounding in
 logs leave."""
-
-_SHAKEN: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
-_INERTIAS: WeakKeyDictionary[Signals, np.ndarray] = WeakKeyDictionary()
 
 
 def expected(filtered_log: FilteredLog, rules: NoiseRules) -> list[np.ndarray]:
@@ -231,6 +224,7 @@ def _of_acceleration(filtered_log: FilteredLog, row: int, low: float, high: floa
     )  # as long as a sample of the band sees
 
 
+@memoized
 def _shaken(signals: Signals) -> np.ndarray:
     """Variance of the noise of positions at each tick `(t, n)` [rad^2]: clocks that jitter make
     more of it where joints are fast.
@@ -239,8 +233,6 @@ def _shaken(signals: Signals) -> np.ndarray:
     samples show beside the smoothed motion.
     """
     assert signals.noise is not None
-    if signals in _SHAKEN:
-        return _SHAKEN[signals]
     level = np.nan_to_num(signals.noise)
     found = np.broadcast_to(level**2, signals.position.shape).copy()
     raw = signals.log.stack("position", signals.subject.joints)
@@ -255,7 +247,6 @@ def _shaken(signals: Signals) -> np.ndarray:
         speed = np.interp(signals.log.time[known], signals.time, square)
         share = _share(beside, speed / square.mean())
         found[:, joint] *= 1 - share + share * square / square.mean()
-    _SHAKEN[signals] = found
     return found
 
 
@@ -285,16 +276,14 @@ def _share(square: np.ndarray, speed: np.ndarray) -> float:
     return float(np.clip(rise * speed.mean() / max(float(square.mean()), 1e-300), 0.0, 1.0))
 
 
+@memoized
 def inertias(signals: Signals) -> np.ndarray:
     """Torque at each joint over the acceleration of each, rotors included, every `POSTURE` along a
     log `(n, p, n)` [kg m^2].
     """
-    if signals not in _INERTIAS:
-        some = np.nan_to_num(signals.position[:: _every(signals)])
-        _INERTIAS[signals] = np.stack(
-            rigid.accelerating(signals.subject, some, np.eye(some.shape[1])), -1
-        ).swapaxes(0, 1)
-    return _INERTIAS[signals]
+    some = np.nan_to_num(signals.position[:: _every(signals)])
+    columns = rigid.accelerating(signals.subject, some, np.eye(some.shape[1]))
+    return np.stack(columns, -1).swapaxes(0, 1)
 
 
 def _every(signals: Signals) -> int:

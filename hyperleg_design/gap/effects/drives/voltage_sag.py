@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -25,13 +25,11 @@ from hyperleg_design.gap.effects.placing import (
     motor_strength,
     motor_velocity,
 )
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.loading import FULL
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.logs.log import Log
-    from hyperleg_design.gap.model.subject import Subject
-    from hyperleg_design.gap.signals.signals import Signals
-    from hyperleg_design.simulation.alteration import Alteration
+from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.simulation.alteration import Alteration
 
 FAR, FALLS_SHORT, FEWEST = 6.0, 0.02, 20
 """A motor falls short where it gives less than it is told, by so many times the median of its

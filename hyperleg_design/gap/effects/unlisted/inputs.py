@@ -7,16 +7,13 @@ left out, as is a pure wave of the motor's angle.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from hyperleg_design.gap.model.memoized import memoized
+from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.gap.signals.stop_operator import stop
-
-if TYPE_CHECKING:
-    from hyperleg_design.gap.signals.signals import Signals
 
 SHAPES = 8
 """Most functions of one input."""
@@ -29,9 +26,8 @@ SLOW, FAST = 0.3, 2.0
 WAYS = (0.02, 0.05, 0.15, 0.4)
 """On which a torque that remembers turns over, half of each [rad] (assumed)."""
 
-_KNOWN: WeakKeyDictionary[Signals, dict[tuple[int, str], np.ndarray]] = WeakKeyDictionary()
 
-
+@memoized
 def functions(signals: Signals, joint: int, name: str) -> np.ndarray:
     """Functions of one input, each of the order of 1.
 
@@ -43,11 +39,8 @@ def functions(signals: Signals, joint: int, name: str) -> np.ndarray:
     Returns:
         `(k, t)`, no more than `SHAPES`; unknown ticks zero.
     """
-    known = _KNOWN.setdefault(signals, {})
-    if (joint, name) not in known:
-        shapes = np.array(_FUNCTIONS[name](signals, joint)).reshape(-1, len(signals.time))
-        known[joint, name] = np.nan_to_num(shapes)
-    return known[joint, name]
+    shapes = np.array(_FUNCTIONS[name](signals, joint)).reshape(-1, len(signals.time))
+    return np.nan_to_num(shapes)
 
 
 def _angle(signals: Signals, joint: int) -> np.ndarray:
