@@ -283,6 +283,8 @@ class Sweep(Printing):
                 f"{summary['designs']} designs ({summary['rejected']} rejected) -> "
                 f"{', '.join(map(str, summary['files']))}"
             )
+            for reason, count in summary["rejected_because"].items():
+                print(f"  {count} rejected: {reason}")
             if protocols:
                 print(summary["text"])
 

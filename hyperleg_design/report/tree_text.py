@@ -7,6 +7,9 @@ from typing import Any
 
 from hyperleg_design.report.text import table
 
+MOST_LINKS = 20
+"""Links that the analysis lists; where there are more, the lightest are summed."""
+
 
 def tree_analysis_text(analysis: Mapping[str, Any]) -> str:
     """Write what `tree_analysis.analyze_tree` returns as a page for a terminal.
@@ -17,7 +20,6 @@ def tree_analysis_text(analysis: Mapping[str, Any]) -> str:
     Returns:
         The text.
     """
-    masses = ", ".join(f"{name} {mass:.3g}" for name, mass in analysis["link_mass"].items())
     joints = [
         [
             name,
@@ -42,8 +44,8 @@ def tree_analysis_text(analysis: Mapping[str, Any]) -> str:
     return "\n".join(
         [
             f"{analysis['design']} ({copies}): {analysis['total_mass']:.2f} kg, {behind} "
-            f"{analysis['limb_mass']:.2f} kg, standing height {analysis['standing_height']:.3f} m",
-            f"links [kg]: {masses}",
+            f"{analysis['limb_mass']:.2f} kg, standing height {_height(analysis)}",
+            f"links [kg]: {_links(analysis['link_mass'])}",
             "",
             table(heads, joints),
             "max torque: derated, one joint at its best whatever the others do; alone: the others "
@@ -70,6 +72,19 @@ def tree_analysis_text(analysis: Mapping[str, Any]) -> str:
     )
 
 
+def _height(analysis: Mapping[str, Any]) -> str:
+    height = analysis["standing_height"]
+    return "unknown without pads" if height is None else f"{height:.3f} m"
+
+
+def _links(masses: Mapping[str, float]) -> str:
+    """Masses of the heaviest links in the order of the file, and the sum of the others."""
+    heaviest = sorted(masses, key=lambda name: -masses[name])[:MOST_LINKS]
+    shown = [f"{name} {mass:.3g}" for name, mass in masses.items() if name in heaviest]
+    rest = [mass for name, mass in masses.items() if name not in heaviest]
+    return ", ".join([*shown, f"{len(rest)} lighter ones {sum(rest):.3g}"] if rest else shown)
+
+
 def _linkages(linkages: Mapping[str, Any]) -> list[str]:
     """One line for each joint that a rod drives, and one for a rod that does not reach."""
     lines = []
@@ -94,5 +109,11 @@ def _forces(forces: Mapping[str, Any], limb: str) -> list[str]:
         for direction, force in forces.items()
         if force["force"] is not None
     ]
-    reasons = {force["reason"]: None for force in forces.values() if force["force"] is None}
-    return lines + [f"force of {limb} on the floor: none; {reason}" for reason in reasons]
+    reasons: dict[str, list[str]] = {}
+    for direction, force in forces.items():
+        if force["force"] is None:
+            reasons.setdefault(force["reason"], []).append(direction)
+    return lines + [
+        f"largest {' and '.join(directions)} force of {limb}: none; {reason}"
+        for reason, directions in reasons.items()
+    ]
