@@ -169,17 +169,25 @@ class Analyze(Chosen):
     what each ablation changes.
     """
 
+    out: Path | None = None
+    """Folder to write a page of the robot to, with its analysis as JSON; none by default."""
+
     def run(self) -> None:
-        """Analyse the design and print the result."""
+        """Analyse the design, print the result, and write its page."""
+        from hyperleg_design.report.sizing.robot_page import write_robot_page
         from hyperleg_design.report.text import analysis_text
         from hyperleg_design.report.tree_text import tree_analysis_text
         from hyperleg_design.sizing.analysis import analyze
 
-        analysis = analyze(self.load())
+        design = self.load()
+        analysis = analyze(design)
+        page = None if self.out is None else write_robot_page(design, self.out, analysis)
         if self.json:
             emit(analysis)
-        else:
-            print((tree_analysis_text if "family" in analysis else analysis_text)(analysis))
+            return
+        print((tree_analysis_text if "family" in analysis else analysis_text)(analysis))
+        if page is not None:
+            print(f"open {page}")
 
 
 @dataclass(frozen=True, kw_only=True)

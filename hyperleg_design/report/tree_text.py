@@ -7,6 +7,10 @@ from typing import Any
 
 from hyperleg_design.report.text import table
 
+JOINTS_NOTE = (
+    "max torque: derated, one joint at its best whatever the others do; alone: the others at zero "
+    "torque; all in the default posture"
+)
 MOST_LINKS = 20
 """Links that the analysis lists; where there are more, the lightest are summed."""
 
@@ -20,56 +24,70 @@ def tree_analysis_text(analysis: Mapping[str, Any]) -> str:
     Returns:
         The text.
     """
-    joints = [
-        [
-            name,
-            analysis["max_joint_torque"][name],
-            analysis["torque_alone"][name],
-            analysis["single_joint_speed"][name],
-            analysis["reflected_inertia"][row][row],
-            analysis["link_inertia"][name],
-        ]
-        for row, name in enumerate(analysis["joints"])
-    ]
-    heads = ["joint", "max torque [Nm]", "alone [Nm]", "speed [rad/s]"]
-    heads += ["reflected inertia [kg m^2]", "link inertia [kg m^2]"]
-    keys = ("peak_torque", "rated_torque", "no_load_speed", "power_constant")
-    motors = [
-        [name, m["motor"], m["gear"], *(float(m[k]) for k in keys)]
-        for name, m in analysis["motors"].items()
-    ]
     limbs = analysis["limbs"]
     copies = f"limbs: {', '.join(limbs)}" if limbs else "described as a whole"
-    limb, behind = ("one limb", "limb") if limbs else ("the robot", "all but the trunk")
+    limb, behind = _limb(analysis), "limb" if limbs else "all but the trunk"
     return "\n".join(
         [
             f"{analysis['design']} ({copies}): {analysis['total_mass']:.2f} kg, {behind} "
             f"{analysis['limb_mass']:.2f} kg, standing height {_height(analysis)}",
             f"links [kg]: {_links(analysis['link_mass'])}",
             "",
-            table(heads, joints),
-            "max torque: derated, one joint at its best whatever the others do; alone: the others "
-            "at zero torque; all in the default posture",
+            table(*joint_table(analysis)),
+            JOINTS_NOTE,
             f"reachable torques of {limb} fill {100 * analysis['zonotope_to_box_volume']:.1f} % "
             f"of the box that their maxima span",
             "",
-            table(
-                [
-                    "motor",
-                    "type",
-                    "gear",
-                    "peak [Nm]",
-                    "rated [Nm]",
-                    "no load [rad/s]",
-                    "Cp [W/Nm^2]",
-                ],
-                motors,
-            ),
+            table(*motor_table(analysis)),
             "",
             *_linkages(analysis["linkages"]),
-            *_forces(analysis["contact_force"], limb),
+            *force_lines(analysis),
         ]
     )
+
+
+def joint_table(analysis: Mapping[str, Any]) -> tuple[list[str], list[list[Any]]]:
+    """Tabulate what the joints can do.
+
+    Args:
+        analysis: as `tree_analysis.analyze_tree` returns it.
+
+    Returns:
+        Heads, and a row a joint.
+    """
+    heads = ["joint", "max torque [Nm]", "alone [Nm]", "speed [rad/s]"]
+    heads += ["reflected inertia [kg m^2]", "link inertia [kg m^2]"]
+    keys = ("max_joint_torque", "torque_alone", "single_joint_speed")
+    return heads, [
+        [
+            name,
+            *(analysis[key][name] for key in keys),
+            analysis["reflected_inertia"][row][row],
+            analysis["link_inertia"][name],
+        ]
+        for row, name in enumerate(analysis["joints"])
+    ]
+
+
+def motor_table(analysis: Mapping[str, Any]) -> tuple[list[str], list[list[Any]]]:
+    """Tabulate the motors and gears.
+
+    Args:
+        analysis: as `tree_analysis.analyze_tree` returns it.
+
+    Returns:
+        Heads, and a row a motor.
+    """
+    heads = ["motor", "type", "gear", "peak [Nm]", "rated [Nm]", "no load [rad/s]", "Cp [W/Nm^2]"]
+    keys = ("peak_torque", "rated_torque", "no_load_speed", "power_constant")
+    return heads, [
+        [name, m["motor"], m["gear"], *(float(m[k]) for k in keys)]
+        for name, m in analysis["motors"].items()
+    ]
+
+
+def _limb(analysis: Mapping[str, Any]) -> str:
+    return "one limb" if analysis["limbs"] else "the robot"
 
 
 def _height(analysis: Mapping[str, Any]) -> str:
@@ -100,8 +118,16 @@ def _linkages(linkages: Mapping[str, Any]) -> list[str]:
     return [*lines, ""] if lines else []
 
 
-def _forces(forces: Mapping[str, Any], limb: str) -> list[str]:
-    """One line for each direction, or the reason why there is no force."""
+def force_lines(analysis: Mapping[str, Any]) -> list[str]:
+    """State the largest forces on the floor, or the reasons why there is none.
+
+    Args:
+        analysis: as `tree_analysis.analyze_tree` returns it.
+
+    Returns:
+        A line a direction that has a force, and a line a reason.
+    """
+    forces, limb = analysis["contact_force"], _limb(analysis)
     lines = [
         f"largest {direction} force of {limb}, default posture: {force['force']:.4g} N, "
         f"{force['body_weights']:.3g} body weights; at their limit: "
