@@ -55,7 +55,8 @@ def write_robot_page(
             chart=False,
         )
         note = tree_text.JOINTS_NOTE if whole else text.joints_note(analysis)
-        joints: list[Any] = [Table(*words.joint_table(analysis), note)]
+        heads, rows = words.joint_table(analysis)
+        joints: list[Any] = [Table(heads, rows, note)]
         if whole:
             joints += tree_text.force_lines(analysis)
         sections = [
