@@ -189,3 +189,12 @@ def test_what_somebody_added_to_a_folder_stays(tmp_path):
         "three.csv",
         "mine.txt",
     }
+
+
+def test_a_place_below_a_file_or_closed_to_writing_is_told_before_any_work(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(OutputError, match=r"file: is a file"):
+        writing.check_output_folder(tmp_path / "file" / "out")
+    monkeypatch.setattr(writing.os, "access", lambda place, mode: False)
+    with pytest.raises(OutputError, match="closed to writing"):
+        writing.check_output_folder(tmp_path / "out")
