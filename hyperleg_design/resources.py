@@ -93,7 +93,7 @@ def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml", noun: s
     except OSError as error:  # a name too long, a folder closed to us
         remedy = f"cannot be read ({error.strerror})"
         raise InputError(noun or NOUNS[kind], "", str(name), remedy) from None
-    known = [one for one in names(kind, suffix) if one.startswith(noun)]
+    known = [each for each in names(kind, suffix) if each.startswith(noun)]
     raise _absent(noun or NOUNS[kind], name, known)
 
 
