@@ -28,8 +28,10 @@ def read_yaml(path: Path) -> dict[str, Any]:
     Raises:
         InputError: unreadable, malformed (with line), duplicate keys, or no mapping.
     """
+    text = ""
     try:
-        data = parse_yaml(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        data = parse_yaml(text)
     except OSError as error:
         raise InputError(short_name(path), "", None, f"cannot be read ({error.strerror})") from None
     except UnicodeDecodeError:
@@ -38,6 +40,8 @@ def read_yaml(path: Path) -> dict[str, Any]:
         mark = getattr(error, "problem_mark", None)
         place = f", line {mark.line + 1}" if mark else ""
         problem = " ".join(str(getattr(error, "problem", None) or error).split())
+        if mark and "\t" in text[mark.index : mark.index + 1]:
+            problem = "a tab stands where spaces must; indent with spaces"
         raise InputError(
             f"{short_name(path)}{place}", "", None, f"is not YAML: {problem}"
         ) from None

@@ -7,6 +7,8 @@ This is the only place in the package that knows; `HYPERLEG_HOME` overrides it.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
@@ -65,7 +67,7 @@ def _inside(folder: Path, kind: str) -> Path:
     return folder / kind
 
 
-def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path:
+def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml", noun: str = "") -> Path:
     """Find a content file that a user names: a path as it stands, or the bare name of a shipped
     file.
 
@@ -73,6 +75,7 @@ def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path
         kind: content folder, one of `CONTENT`.
         name: path to a file, or a name such as `hyperleg`.
         suffix: ending of shipped files.
+        noun: what errors call it, where that is also how the names of such files begin.
 
     Returns:
         The path of the file.
@@ -88,14 +91,39 @@ def find(kind: str, name: str | os.PathLike[str], suffix: str = ".yaml") -> Path
         if path.name == str(name) and shipped.is_file():
             return shipped
     except OSError as error:  # a name too long, a folder closed to us
-        raise InputError(NOUNS[kind], "", str(name), f"cannot be read ({error.strerror})") from None
-    raise InputError(
-        NOUNS[kind], "", str(name), f"no such file; {_shipped(str(name), names(kind, suffix))}"
-    )
+        remedy = f"cannot be read ({error.strerror})"
+        raise InputError(noun or NOUNS[kind], "", str(name), remedy) from None
+    known = [each for each in names(kind, suffix) if each.startswith(noun)]
+    raise _absent(noun or NOUNS[kind], name, known)
 
 
-def _shipped(name: str, known: list[str]) -> str:
-    return meant(name, known, f"shipped: {', '.join(known) or 'none'}")
+def _absent(noun: str, name: str | os.PathLike[str], known: list[str]) -> InputError:
+    """The error of a file that is not there, or is a folder."""
+    reason = "is a folder, not a file" if str(name) and Path(name).is_dir() else "no such file"
+    shipped = meant(str(name), known, f"shipped: {', '.join(known) or 'none'}")
+    return InputError(noun, "", str(name), f"{reason}; {shipped}")
+
+
+@contextmanager
+def named_in(where: str, field: str) -> Iterator[None]:
+    """Say of a file that is not found where it was named.
+
+    Args:
+        where: file that names it.
+        field: of that file.
+
+    Yields:
+        Nothing.
+
+    Raises:
+        InputError: there is no such file; names both.
+    """
+    try:
+        yield
+    except InputError as error:
+        if error.field or error.where not in (*NOUNS.values(), "task", "preset"):
+            raise
+        raise InputError(where, field, error.value, error.remedy) from None
 
 
 def names(kind: str, suffix: str = ".yaml") -> list[str]:
@@ -139,5 +167,5 @@ def find_sim(what: str, name: str | os.PathLike[str]) -> Path:
     known = sim_names(what)
     path = find("sim", f"{what}_{name}") if str(name) in known else Path(name)
     if not path.is_file():
-        raise InputError(what, "", str(name), f"no such file; {_shipped(str(name), known)}")
+        raise _absent(what, name, known)
     return path

@@ -123,12 +123,18 @@ def check_output_folder(folder: str | os.PathLike[str]) -> Path:
         Its absolute path.
 
     Raises:
-        OutputError: it is a file, or a folder with somebody else's content.
+        OutputError: it is a file or lies below one, is closed to writing, or is a folder with
+        somebody else's content.
     """
     try:
         folder = Path(folder).resolve()
         if folder.exists() and not folder.is_dir():
             raise OutputError(f"{folder}: is a file, not a folder; choose another --out")
+        place = next(p for p in (folder, *folder.parents) if p.exists())
+        if not place.is_dir():
+            raise OutputError(f"{place}: is a file, not a folder; choose another --out")
+        if not os.access(place, os.W_OK | os.X_OK):
+            raise OutputError(f"{place}: is closed to writing; choose another --out")
         foreign = folder.is_dir() and not (folder / MARKER).is_file() and any(folder.iterdir())
     except (OSError, ValueError) as error:
         raise OutputError(

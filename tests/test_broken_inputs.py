@@ -13,7 +13,13 @@ import pytest
 from hyperleg_design import cli
 
 OUT = ("--out", "out")
+POLICY = "walk_upright-toe-0"
+SEARCH = ("search", "sweep_good.yaml", "--objective", "leg_mass")
 VALUE = "{{value: {}, label: assumed, source: test}}"
+
+CAMPAIGN = (
+    "name: c\npreset: study\ngroups: [{name: g, task: walk_upright, designs: [toe], seeds: 1}]\n"
+)
 
 FILES: dict[str, str | bytes] = {
     "empty.yaml": "",
@@ -87,14 +93,42 @@ FILES: dict[str, str | bytes] = {
     "campaign.yaml": "name: x\n",
     "sweep.yaml": "base: hyperleg\naxes: []\n",
     "notes.txt": "not a robot",
+    **{
+        f"sweep_{name}.yaml": f"design: hyperleg\naxes: {{toe.mass: {axis}}}\n"
+        for name, axis in {
+            "good": "{low: 0.1, high: 0.5, steps: 3}",
+            "nan": "{low: .nan, high: 0.5, steps: 3}",
+            "reversed": "{low: 0.5, high: 0.1, steps: 3}",
+            "huge": "{low: 0.1, high: 0.5, steps: 1000000000}",
+            "part": "{low: 0.1, high: 0.5, steps: 2.5}",
+            "none": "{values: []}",
+            "log": "{low: -0.1, high: 0.5, steps: 3, log: true}",
+        }.items()
+    },
+    "sweep_tab.yaml": "design: hyperleg\naxes:\n\ttoe.mass: 3\n",
+    "sweep_latin.yaml": "name: caf\xe9\n".encode("latin-1"),
+    "sweep_design.yaml": "design: hyperlegs\naxes: {toe.mass: {values: [0.1]}}\n",
+    **{
+        f"walk_{name}.yaml": "kind: walk\n" + line
+        for name, line in {
+            "none": "trials: 0",
+            "many": "trials: 100000000",
+            "nan": "distance: .nan",
+            "unknown": "speeed: 1",
+            "wide": "start: {tilt: wide}",
+        }.items()
+    },
+    "course.yaml": "kind: t_test\npoints: {A: [0, 0]}\norder: [A, Q]\n",
+    "campaign_task.yaml": CAMPAIGN.replace("walk_upright", "walk_uprigth"),
+    "campaign_design.yaml": CAMPAIGN.replace("[toe]", "[teo]"),
+    "campaign_seeds.yaml": CAMPAIGN.replace("seeds: 1", "seeds: 0"),
+    "ranges.yaml": "pool: 8\nranges: {toe.mass: {low: 0.5, high: 0.1}}\n",
 }
 """Files that every case finds in its working directory."""
 
-DESIGN_FILES = [
-    name
-    for name in FILES
-    if name.endswith(".yaml") and not name.startswith(("base", "overlay", "sweep"))
-]
+OTHER = ("base", "overlay", "sweep", "walk", "course", "campaign_", "ranges")
+"""How names of files begin that are no broken designs."""
+DESIGN_FILES = [name for name in FILES if name.endswith(".yaml") and not name.startswith(OTHER)]
 ROBOT_FILES = [name for name in FILES if name.endswith((".urdf", ".xml"))]
 LOG_FILES = [
     name for name in FILES if name.endswith((".csv", ".parquet", ".mcap", ".pt", ".db3", ".json"))
@@ -217,6 +251,63 @@ CASES: list[tuple[tuple[str, ...], tuple[str, ...]]] = [
     (("evaluate", "garbage.onnx", "--out", "notes.txt"), ("notes.txt",)),
     (("video", "none.onnx", "--out", "a.gif"), ("none.onnx", "walk_upright-toe-0")),
     (("video", "garbage.onnx", "--out", "a.gif"), ("garbage.onnx",)),
+    # files of sweeps, protocols, campaigns and ranges, and what a search and a viewer are asked for
+    *[
+        (("sweep", "run", f"sweep_{name}.yaml", *OUT), (f"sweep_{name}.yaml", word))
+        for name, word in {
+            "nan": "axes.toe.mass.low = nan",
+            "reversed": "must lie below high",
+            "huge": "1000000000",
+            "part": "whole number",
+            "none": "at least one value",
+            "log": "must be positive",
+            "tab": "a tab",
+            "latin": "UTF-8",
+            "design": "design = 'hyperlegs'",
+        }.items()
+    ],
+    *[
+        (("evaluate", POLICY, "--protocol", f"walk_{name}.yaml", *OUT), (f"walk_{name}.yaml", word))
+        for name, word in {
+            "none": "trials = 0",
+            "many": "4096",
+            "nan": "distance = nan",
+            "unknown": "did you mean speed?",
+            "wide": "start.tilt = 'wide'",
+        }.items()
+    ],
+    (("evaluate", POLICY, "--protocol", "course.yaml", *OUT), ("course.yaml", "'Q'")),
+    *[
+        (("campaign", "status", f"campaign_{name}.yaml"), (f"campaign_{name}.yaml", word))
+        for name, word in {
+            "task": "groups.0.task = 'walk_uprigth'",
+            "design": "groups.0.designs = 'teo'",
+            "seeds": "groups.0.seeds = 0",
+        }.items()
+    ],
+    (("campaign", "status", "elsewhere"), ("campaign_t_test",)),
+    (("variants", POLICY, "--designs", "ranges.yaml", *OUT), ("ranges.yaml", "low < high")),
+    *[
+        ((*SEARCH, "--storage", url, *OUT), (url,))
+        for url in ("mysql://host", "no_url", "sqlite:///no/such/folder/x.db")
+    ],
+    (
+        (*SEARCH, "--constraint", "leg_mass<<3", *OUT),
+        ("leg_mass<<3", "MEASURE<=NUMBER"),
+    ),
+    (("view", "toe", "--once", "--port", "99999"), ("--port = 99999", "65535")),
+    (("view", "toe", "--once", "--host", "no host"), ("no host",)),
+    (("view", "toe", "--once", "--policy", "walk_upright-toe-99"), ("walk_upright-toe-99",)),
+    (
+        ("video", POLICY, "--size", "100000", "100000", "--out", "a.gif"),
+        ("--size", "100000", "4096"),
+    ),
+    (("video", POLICY, "--duration", "nan", "--out", "a.gif"), ("--duration = nan",)),
+    # folders in place of files, and places below files
+    (("analyze", "--design", "folder.yaml"), ("folder.yaml", "is a folder")),
+    (("evaluate", POLICY, "--protocol", "folder.yaml", *OUT), ("folder.yaml", "is a folder")),
+    (("analyze", "--out", "notes.txt/page"), ("notes.txt", "is a file")),
+    (("evaluate", POLICY, "--logs", "notes.txt/logs", *OUT), ("notes.txt", "is a file")),
     # the gap's verbs
     (("gap", "show", "viscuous_friction", *OUT), ("viscous_friction",)),
     (("gap", "show", "viscous_friction", "--set", "damp=1", *OUT), ("damp",)),
@@ -259,6 +350,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("broken")
     for name, content in FILES.items():
         (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    (folder / "folder.yaml").mkdir()
     return folder
 
 

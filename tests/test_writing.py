@@ -205,3 +205,12 @@ def test_plain_values_survive_json_and_what_is_no_number_becomes_none():
         "f": [1.5, [None]],
     }
     assert json.loads(json.dumps(found, allow_nan=False)) == found
+
+
+def test_a_place_below_a_file_or_closed_to_writing_is_told_before_any_work(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(OutputError, match=r"file: is a file"):
+        writing.check_output_folder(tmp_path / "file" / "out")
+    monkeypatch.setattr(writing.os, "access", lambda place, mode: False)
+    with pytest.raises(OutputError, match="closed to writing"):
+        writing.check_output_folder(tmp_path / "out")

@@ -166,16 +166,21 @@ class Analyze(Chosen):
     what each ablation changes.
     """
 
+    out: Path | None = None
+    """Folder to write a page of the robot to, with its analysis as JSON; none by default."""
+
     def run(self) -> None:
-        """Analyse the design and print the result."""
+        """Analyse the design, print the result, and write its page."""
+        from hyperleg_design.report.sizing.robot_page import write_robot_page
         from hyperleg_design.report.text import analysis_text
         from hyperleg_design.report.tree_text import tree_analysis_text
         from hyperleg_design.sizing.analysis import analyze
 
-        analysis = analyze(self.load())
-        self.tell(
-            analysis, (tree_analysis_text if "family" in analysis else analysis_text)(analysis)
-        )
+        design = self.load()
+        analysis = analyze(design)
+        page = None if self.out is None else write_robot_page(design, self.out, analysis)
+        text = (tree_analysis_text if "family" in analysis else analysis_text)(analysis)
+        self.tell(analysis, text if page is None else f"{text}\nopen {page}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -272,6 +277,8 @@ class Sweep(Printing):
                 f"{summary['designs']} designs ({summary['rejected']} rejected) -> "
                 f"{', '.join(map(str, summary['files']))}"
             )
+            for reason, count in summary["rejected_because"].items():
+                print(f"  {count} rejected: {reason}")
             if protocols:
                 print(summary["text"])
 

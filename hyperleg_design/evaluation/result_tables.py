@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.evaluation.protocol import protocol_mapping
+from hyperleg_design.evaluation.result import Evaluation, counted
 from hyperleg_design.provenance import git_commit, versions
-from hyperleg_design.writing import output_folder, write_bytes, write_json
+from hyperleg_design.writing import output_folder, write_bytes, write_json, write_text
 
 if TYPE_CHECKING:
     import pandas as pd
-
-from hyperleg_design.evaluation.result import Evaluation
 
 
 def trial_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
@@ -52,6 +51,26 @@ def trial_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
             }
             rows.append(head | {"protocol": evaluation.protocol.name} | ended | measures)
     return pd.DataFrame(rows)
+
+
+def policy_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
+    """Tabulate the means of each policy.
+
+    Args:
+        evaluations: whose trials are averaged.
+
+    Returns:
+        One row for each policy, design and protocol: the number of trials, the shares that ended in
+        each way, and the mean of each measure over the trials that did not fall (`counted`).
+    """
+    keys = ["policy", "variant", "design", "seed", "steps", "trained", "outside", "protocol"]
+    rows = trial_table(evaluations).drop(columns=["trial", "outcome", "end_time"])
+    for measure in rows.columns.difference(keys):
+        rows[measure] = counted(rows, measure)
+    groups = rows.groupby(keys, sort=False)
+    table = groups.mean().reset_index()
+    table.insert(len(keys), "trials", groups.size().to_numpy())
+    return table
 
 
 def motor_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
@@ -135,9 +154,9 @@ def cycle_table(evaluations: Sequence[Evaluation]) -> pd.DataFrame:
 def write_results(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]) -> Path:
     """Write evaluations to a folder.
 
-    The files are `trials.parquet`, `motors.parquet`, `cycles.parquet`, `paths.parquet` and
-    `evaluation.json`. The last one holds the protocols, what each policy states about itself,
-    versions and commit, and no date.
+    The files are `policies.csv`, `trials.parquet`, `motors.parquet`, `cycles.parquet`,
+    `paths.parquet` and `evaluation.json`. The last one holds the protocols, what each policy states
+    about itself, versions and commit, and no date.
 
     Args:
         folder: to be written; a folder of ours is replaced.
@@ -194,6 +213,8 @@ def write_results(folder: str | os.PathLike[str], evaluations: Sequence[Evaluati
     with output_folder(folder) as place:
         for name, table in contents.items():
             write_bytes(place / f"{name}.parquet", _parquet(table))
+        policies = policy_table(evaluations).to_csv(index=False, float_format="%.6g")
+        write_text(place / "policies.csv", policies)
         write_json(place / "evaluation.json", described)
     return Path(folder)
 

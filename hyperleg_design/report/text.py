@@ -82,7 +82,6 @@ def analysis_text(analysis: Mapping[str, Any]) -> str:
         The text.
     """
     masses = ", ".join(f"{k} {v:.3g}" for k, v in analysis["segment_mass"].items())
-    limits = analysis["joint_limits"]
     printed = ", ".join(f"{j} {v:.4g}" for j, v in analysis["max_joint_torque"].items())
     parts = [
         f"{analysis['design']} ({analysis['variant']}): {analysis['total_mass']:.2f} kg, leg "
@@ -90,52 +89,13 @@ def analysis_text(analysis: Mapping[str, Any]) -> str:
         f"leg length {analysis['leg_length']:.3f} m, height {analysis['height']:.4f} m",
         f"segments [kg]: {masses}",
         "",
-        table(
-            [
-                "joint",
-                "max torque [Nm]",
-                "alone [Nm]",
-                "speed [rad/s]",
-                "reflected inertia [kg m^2]",
-            ],
-            [[j, *(limits[name][j] for name in _LIMITS)] for j in analysis["joints"]],
-        ),
-        f"all columns: {limits['convention']}; max torque: whatever the others do; alone: the "
-        "others at zero torque",
+        table(*joint_table(analysis)),
+        joints_note(analysis),
         f"as the paper's Table I prints it, standing and derated [Nm]: {printed}",
         f"reachable torques below the hip fill {100 * analysis['zonotope_to_box_volume']:.1f} % of "
         f"the box that their maxima span",
         "",
-        table(
-            [
-                "motor",
-                "type",
-                "gear",
-                "peak [Nm]",
-                "rated [Nm]",
-                "stall [Nm]",
-                "no load [rad/s]",
-                "Cp [W/Nm^2]",
-            ],
-            [
-                [
-                    n,
-                    m["motor"],
-                    m["gear"],
-                    *(
-                        float(m[k])
-                        for k in (
-                            "peak_torque",
-                            "rated_torque",
-                            "stall_torque",
-                            "no_load_speed",
-                            "power_constant",
-                        )
-                    ),
-                ]
-                for n, m in analysis["motors"].items()
-            ],
-        ),
+        table(*motor_table(analysis)),
     ]
     if analysis["ablation_confound"]:
         parts += [
@@ -144,6 +104,54 @@ def analysis_text(analysis: Mapping[str, Any]) -> str:
             confound_text(analysis["ablation_confound"]),
         ]
     return "\n".join(parts)
+
+
+def joint_table(analysis: Mapping[str, Any]) -> tuple[list[str], list[list[Any]]]:
+    """Tabulate what the joints can do.
+
+    Args:
+        analysis: as `analyze` returns it, of a design of HyperLeg's family.
+
+    Returns:
+        Heads, and a row a joint.
+    """
+    heads = ["joint", "max torque [Nm]", "alone [Nm]", "speed [rad/s]"]
+    heads.append("reflected inertia [kg m^2]")
+    limits = analysis["joint_limits"]
+    return heads, [[j, *(limits[name][j] for name in _LIMITS)] for j in analysis["joints"]]
+
+
+def joints_note(analysis: Mapping[str, Any]) -> str:
+    """Say what the columns of `joint_table` mean.
+
+    Args:
+        analysis: as `analyze` returns it, of a design of HyperLeg's family.
+
+    Returns:
+        One line.
+    """
+    return (
+        f"all columns: {analysis['joint_limits']['convention']}; max torque: whatever the others "
+        "do; alone: the others at zero torque"
+    )
+
+
+def motor_table(analysis: Mapping[str, Any]) -> tuple[list[str], list[list[Any]]]:
+    """Tabulate the motors and gears.
+
+    Args:
+        analysis: as `analyze` returns it, of a design of HyperLeg's family.
+
+    Returns:
+        Heads, and a row a motor.
+    """
+    heads = ["motor", "type", "gear", "peak [Nm]", "rated [Nm]", "stall [Nm]", "no load [rad/s]"]
+    heads.append("Cp [W/Nm^2]")
+    keys = ("peak_torque", "rated_torque", "stall_torque", "no_load_speed", "power_constant")
+    return heads, [
+        [name, m["motor"], m["gear"], *(float(m[k]) for k in keys)]
+        for name, m in analysis["motors"].items()
+    ]
 
 
 def confound_text(effects: Mapping[str, Any]) -> str:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import yaml
+from typing_extensions import override
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError, meant
@@ -44,35 +45,17 @@ class Design(HyperLeg):
     def __post_init__(self) -> None:
         check_design(self)
 
+    @override
     def with_values(
         self, values: Mapping[str, Any], where: str = "override", label: str = "user"
     ) -> Self:
-        """Copy the design with other values of some leaves.
-
-        A printed sum of masses (`masses.expected_total`, `masses.expected_leg`) is no longer
-        checked where a mass in it is replaced.
-
-        Args:
-            values: numbers, texts, or arrays of either with the batch in front, by dotted path, or
-                by a pattern of paths such as `actuators.hip_*.gear`.
-            where: what to name in errors.
-            label: origin of the new values.
-
-        Returns:
-            The validated copy.
-
-        Raises:
-            InputError: unknown path, or a value or combination that makes no sense.
-        """
-        values = self.by_path(values)
-        origins = {**self.origins, **{p: Origin(label, where) for p in values}}
-        unprinted = lapsed(self, values)
-        origins.update(
-            {p: Origin("derived", f"lapsed: a mass was replaced by {where}") for p in unprinted}
-        )
-        replaced = self._replaced({**values, **unprinted}, where, origins)
+        replaced = super().with_values(values, where, label)
         check_printed(replaced, where)
         return replaced
+
+    @override
+    def lapsed(self, values: Mapping[str, Any]) -> dict[str, float]:
+        return lapsed(self, values)
 
 
 def load_design(

@@ -27,6 +27,7 @@ from hyperleg_design.robot import transmission
 from hyperleg_design.robot.checks.check_housing import check_housing
 from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.described_file import FileJoint, FileRobot, read_robot
+from hyperleg_design.robot.housing import housing
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.entries import check_keys
@@ -101,11 +102,11 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
     if not isinstance(lock, list):
         raise InputError(where, "lock", lock, "expects a list of joints or patterns")
     locked = {name for pattern in lock for name in _matching(str(pattern), moving, where, "lock")}
-    for name in moving:
-        kind = robot.joints[name].kind
-        if kind != "revolute" and name not in locked:
-            remedy = "is no kind of joint that a design moves; list it under lock"
-            raise InputError(robot.source, f"joint {name}", kind, remedy)
+    odd = [n for n in moving if robot.joints[n].kind != "revolute" and n not in locked]
+    if odd:
+        more = f", and so are {', '.join(odd[1:])}" if odd[1:] else ""
+        remedy = f"is no kind of joint that a design moves{more}; list them under lock"
+        raise InputError(robot.source, f"joint {odd[0]}", robot.joints[odd[0]].kind, remedy)
     free = [name for name in moving if name not in locked]
     actuators: dict[str, Any] = {}
     for pattern, held in _section(data, "actuators", where).items():
@@ -114,8 +115,7 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
         names = [pattern] if own else _matching(pattern, free, where, "actuators")
         _fields(held, where, f"actuators.{pattern}", "motor: RI70, gear: 9")
         for name in names:
-            parent = robot.joints[name].parent if name in robot.joints else robot.root
-            actuators[name] = {"housed_in": parent} | dict(held)
+            actuators[name] = _housed(robot, name, locked, held) | dict(held)
     joints = {
         name: _joint(joint, robot.source, name in locked) for name, joint in robot.joints.items()
     }
@@ -187,6 +187,18 @@ def _pads(robot: FileRobot, given: Mapping[str, Any], where: str) -> dict[str, A
     return mapping
 
 
+def _housed(
+    robot: FileRobot, name: str, locked: set[str], held: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Link that carries a motor, and where, as far as the actuation file leaves it open."""
+    if "housed_in" in held:
+        return {}
+    if name not in robot.joints:
+        return {"housed_in": robot.root}
+    link, place = housing(robot, name, locked)
+    return {"housed_in": link, "place": _leaf(place.tolist(), robot.source, "derived")}
+
+
 def _section(data: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:
     held = data.get(key) or {}
     if not isinstance(held, Mapping):
@@ -218,8 +230,8 @@ def _real(inertia: np.ndarray) -> np.ndarray:
     return float(high) * np.eye(3)
 
 
-def _leaf(value: Any, source: str) -> dict[str, Any]:
-    return {"value": value, "label": "vendor", "source": source}
+def _leaf(value: Any, source: str, label: str = "vendor") -> dict[str, Any]:
+    return {"value": value, "label": label, "source": source}
 
 
 def _joint(joint: FileJoint, source: str, locked: bool) -> dict[str, Any]:
@@ -255,15 +267,16 @@ def lint(robot: FileRobot, design: TreeDesign) -> list[Finding]:
         design: the design made of it.
 
     Returns:
-        Findings: an error where the file promises more than the motors have, a warning where it
-        has less than they have, or another rotor inertia.
+        Warnings, first those where the file promises more than the motors have, then those where
+        it has less than they have, or another rotor inertia.
     """
     matrix = transmission.joint_from_motor(design)
     torque = transmission.max_joint_torque(design)
     speed = transmission.single_joint_speed(design)
     rotors = np.diag(leg_reflected_inertia(design))
     motors = list(design.actuator_sections)
-    findings = []
+    promised: list[Finding] = []
+    others: list[Finding] = []
     for row, name in enumerate(design.joint_sections):
         joint = robot.joints[name]
         parts = []
@@ -278,9 +291,9 @@ def lint(robot: FileRobot, design: TreeDesign) -> list[Finding]:
             if not np.isfinite(stated) or abs(stated / own - 1) <= AGREES:
                 continue
             more = stated > own
-            findings.append(
+            (promised if more else others).append(
                 Finding(
-                    "error" if more else "warning",
+                    "warning",
                     f"joint {name}",
                     f"{field} is {stated:.4g} {unit}, {stated / own:.3g} times the {own:.4g} {unit}"
                     f" of {driven}",
@@ -290,7 +303,7 @@ def lint(robot: FileRobot, design: TreeDesign) -> list[Finding]:
                 )
             )
         if np.isfinite(joint.armature) and abs(joint.armature / rotors[row] - 1) > AGREES:
-            findings.append(
+            others.append(
                 Finding(
                     "warning",
                     f"joint {name}",
@@ -299,4 +312,4 @@ def lint(robot: FileRobot, design: TreeDesign) -> list[Finding]:
                     f"set it to {rotors[row]:.4g}",
                 )
             )
-    return sorted(findings, key=lambda f: f.severity != "error")
+    return [*promised, *others]

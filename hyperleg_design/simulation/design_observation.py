@@ -193,4 +193,6 @@ def design_ranges(data: Any, where: str) -> DesignRanges:
             )
         except (TypeError, ValueError):
             raise InputError(where, path, dict(entry), "expects numbers low and high") from None
+        except InputError as error:
+            raise InputError(where, path, dict(entry), error.remedy) from None
     return DesignRanges(ranges)

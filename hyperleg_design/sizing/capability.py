@@ -305,6 +305,7 @@ def _extreme(push: _Push, upright: bool, vertical: float | None) -> tuple[np.nda
         constraints.append(turning @ stacked == 0)
     if vertical is not None:
         constraints.append(cp.sum(force[:, 2]) == vertical / weight)
+    limb = f"{push.side} " if push.side else ""
     total = cp.sum(force, axis=0) @ DIRECTIONS[push.direction]
     problem = cp.Problem(cp.Maximize(total), [*constraints, cp.sum(force[:, 2]) <= LARGEST])
     try:
@@ -315,13 +316,13 @@ def _extreme(push: _Push, upright: bool, vertical: float | None) -> tuple[np.nda
         ) from None
     if problem.status not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
         raise InfeasibleError(
-            f"{design.name}: no contact force of the {push.side} foot lets its motors hold this "
+            f"{design.name}: no contact force of the {limb}foot lets its motors hold this "
             f"posture ({problem.status})"
         )
     pad_force = force.value * weight
     if pad_force[:, 2].sum() > 0.999 * LARGEST * weight:
         raise InfeasibleError(
-            f"{design.name}: the {push.side} leg is straight in this posture: its bones carry any "
+            f"{design.name}: the {limb}leg is straight in this posture: its bones carry any "
             "force; bend the knee"
         )
     return pad_force, torque.value * peak

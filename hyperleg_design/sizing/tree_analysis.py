@@ -51,6 +51,7 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
     joints, matrix = transmission.joint_names(design), transmission.joint_from_motor(design)
     peak = motor_envelope(design).peak_torque
     default = tree_limb.default_position(design)
+    unknown = design.trunk.motion == "floating" and not design.pad_sections
 
     def named(values: Any) -> dict[str, float]:
         return dict(zip(joints, np.asarray(values, float).tolist(), strict=True))
@@ -62,7 +63,7 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
         "limbs": [copy for copy in design.copies if copy],
         "total_mass": float(total_mass(design)),
         "limb_mass": float(limb_mass(design)),
-        "standing_height": float(standing_height(design)),
+        "standing_height": None if unknown else float(standing_height(design)),
         "link_mass": {
             name: float(body.mass) for name, body in limb_masses.limb_masses(design).links.items()
         },

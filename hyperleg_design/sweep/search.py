@@ -167,12 +167,8 @@ def run_search(
     from tqdm import tqdm
 
     folder = Path(out)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(
-            f"{folder}: cannot be made ({error.strerror}); choose another --out"
-        ) from None
+    if not storage:  # the database lies in the folder
+        _make(folder)
     url = storage or f"sqlite:///{(folder / DATABASE).resolve()}"
     study = open_study(
         url,
@@ -182,6 +178,7 @@ def run_search(
         seed=search.sweep.seed,
         digest=search.digest(),
     )
+    _make(folder)
     owner = owner_of(folder)
     done = (optuna.trial.TrialState.COMPLETE, optuna.trial.TrialState.FAIL)
     with clear_errors(url):
@@ -199,6 +196,15 @@ def run_search(
                 finished = len(study.get_trials(deepcopy=False, states=done))
                 bar.update(finished - before)
     return study
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(
+            f"{folder}: cannot be made ({error.strerror}); choose another --out"
+        ) from None
 
 
 def _suggested(search: Search, trial: optuna.Trial) -> tuple[str, dict[str, Any]]:

@@ -162,7 +162,8 @@ def _base(data: Mapping[str, Any], where: str, overrides: Mapping[str, Any]) -> 
         raise InputError(
             where, "design", data["design"], "expects the name of a design or its file"
         )
-    base = load_robot(data["design"])
+    with resources.named_in(where, "design"):
+        base = load_robot(data["design"])
     if isinstance(base, Design) and base.variant != "toe":
         raise InputError(
             where,

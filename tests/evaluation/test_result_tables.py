@@ -13,6 +13,7 @@ from hyperleg_design.evaluation.result import by_seed, evaluation_of
 from hyperleg_design.evaluation.result_tables import (
     cycle_table,
     motor_table,
+    policy_table,
     trial_table,
     write_results,
 )
@@ -40,6 +41,15 @@ def test_a_row_a_trial(evaluations):
         == evaluations[0].measures[0]["steady_cost_of_transport"]
     )
     assert table["variant"].unique().tolist() == ["toe"]
+
+
+def test_a_row_a_policy_with_means_of_what_did_not_fall(evaluations):
+    trials, table = trial_table(evaluations), policy_table(evaluations)
+    assert table["policy"].tolist() == ["p0", "p1", "p2", "p3", "p4"]
+    assert table["fell"].tolist() == [0.5] * 5
+    arrived = trials[(trials["policy"] == "p2") & (trials["outcome"] == "arrived")]
+    cost = table.loc[2, "steady_cost_of_transport"]
+    assert cost == arrived["steady_cost_of_transport"].mean()
 
 
 def test_a_row_a_motor_of_trials_that_have_a_steady_state(evaluations):
@@ -84,6 +94,7 @@ def test_results_are_written_whole_and_the_same_again(evaluations, tmp_path):
 
     first, second = (write_results(tmp_path / name, evaluations) for name in ("a", "b"))
     names = {
+        "policies.csv",
         "trials.parquet",
         "motors.parquet",
         "cycles.parquet",
@@ -94,6 +105,7 @@ def test_results_are_written_whole_and_the_same_again(evaluations, tmp_path):
     for name in names:
         assert (first / name).read_bytes() == (second / name).read_bytes()
     assert pd.read_parquet(first / "trials.parquet").equals(trial_table(evaluations))
+    assert pd.read_csv(first / "policies.csv")["trials"].tolist() == [2] * 5
     described = json.loads((first / "evaluation.json").read_text())
     assert described["protocols"][0]["distance"] == 20
     assert [p["seed"] for p in described["policies"]] == [0, 0, 1, -1, -1]

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from hyperleg_design.report.tree_text import tree_analysis_text
+import pytest
+
+from hyperleg_design.report.tree_text import MOST_LINKS, tree_analysis_text
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.sizing.analysis import analyze
-from tests.robot.tree_files import leg
+from tests.robot.tree_files import leg, leg_file
 
 
 def test_a_robot_with_limbs_speaks_of_one_limb_and_gives_reductions_of_its_rods():
@@ -25,3 +27,21 @@ def test_a_robot_that_is_described_as_a_whole_has_no_limbs():
 def test_without_pads_the_reason_stands_once():
     text = tree_analysis_text(analyze(leg(pads={})))
     assert text.count("has no pads") == 1
+
+
+def test_without_pads_a_floating_robot_has_no_standing_height():
+    trunk = {"link": "base", "motion": "floating"}
+    text = tree_analysis_text(analyze(leg(pads={}, trunk=trunk)))
+    assert "standing height unknown without pads" in text
+
+
+def test_of_many_links_the_heaviest_are_listed_and_the_rest_summed():
+    frames = {f"frame_{i}": {"mass": 0.01, "gyration": [0.1] * 3} for i in range(30)}
+    bolts = {name: {"parent": "base", "child": name, "type": "fixed"} for name in frames}
+    whole = leg_file()
+    many = leg(links=whole["links"] | frames, joints=whole["joints"] | bolts)
+    (line,) = [x for x in tree_analysis_text(analyze(many)).splitlines() if x.startswith("links")]
+    masses = [float(entry.split()[-1]) for entry in line.removeprefix("links [kg]: ").split(", ")]
+    assert len(masses) == MOST_LINKS + 1
+    assert "13 lighter ones 0.13" in line
+    assert sum(masses) == pytest.approx(3.3, rel=1e-3)

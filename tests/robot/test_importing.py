@@ -88,7 +88,7 @@ def test_limits_that_contradict_the_motors_are_named(tmp_path):
     path.write_text(text)
     _, findings = import_robot(path, actuation(tmp_path / "motors.yaml"))
     (finding,) = findings
-    assert (finding.severity, finding.place) == ("error", "joint hip")
+    assert (finding.severity, finding.place) == ("warning", "joint hip")
     for word in ("effort is 40 Nm", "2.13 times", "18.76", "RI70 at 7:1"):
         assert word in str(finding)
     weaker = {"actuators": LEG | {"knee": {"motor": "RI60", "gear": 18}}}
@@ -192,6 +192,10 @@ def test_a_sliding_joint_is_refused_until_it_is_locked(tmp_path):
     path.write_text(urdf(leg()).replace('type="revolute"', 'type="prismatic"', 1))
     with pytest.raises(InputError, match=r"joint hip.*prismatic.*lock"):
         import_robot(path, actuation(tmp_path / "motors.yaml"))
+    path.write_text(path.read_text().replace('type="revolute"', 'type="prismatic"'))
+    with pytest.raises(InputError, match=r"joint hip.*so are knee; list them under lock"):
+        import_robot(path, actuation(tmp_path / "motors.yaml"))
+    path.write_text(urdf(leg()).replace('type="revolute"', 'type="prismatic"', 1))
     motors = actuation(tmp_path / "m.yaml", lock=["hip"], actuators={"knee": LEG["knee"]})
     design, _ = import_robot(path, motors)
     assert list(design.joint_sections) == ["knee"]

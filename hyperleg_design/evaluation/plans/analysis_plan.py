@@ -133,7 +133,7 @@ def load_plan(name: str | Path = "analysis_plan") -> AnalysisPlan:
     Raises:
         InputError: names file, field, value and remedy.
     """
-    path = resources.find("sim", name)
+    path = resources.find("sim", name, noun="analysis_plan")
     return plan_from_mapping(read_yaml(path), short_name(path))
 
 

@@ -24,7 +24,7 @@ from hyperleg_design.gap.experiments.motions import Motion, recommended
 from hyperleg_design.gap.experiments.pair import Pair, apart, pairs_of
 from hyperleg_design.gap.experiments.plan import plan_mapping
 from hyperleg_design.gap.experiments.rehearsal import knows_gains, rehearsed
-from hyperleg_design.gap.experiments.rig_room import room_of
+from hyperleg_design.gap.experiments.rig_room import FASTEST, room_of
 from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.model.subject import Subject
@@ -81,12 +81,13 @@ def design_experiment(
     motions, left_out = recommended(subject, room, rate, np.random.default_rng(seed))
     if not motions:
         raise InfeasibleError(
-            f"{subject.name}: no motion fits: "
-            f"{'; '.join(f'{one.name}: {one.why}' for one in left_out)}"
+            f"{subject.name}: no motion fits; a default posture in which gravity loads these "
+            "joints less may help, or stronger motors: "
+            f"{'; '.join(f'{one.name} {one.why}' for one in left_out)}"
         )
     blocks = info.blocks_of(subject)
     grams = {}
-    for motion in tqdm(motions, desc="information", disable=not progress):
+    for motion in tqdm(motions, desc="judging motions", disable=not progress):
         log = rehearsed(
             subject, motion.name, motion.time, motion.target, motion.position, torque=torque
         )
@@ -170,8 +171,8 @@ def _notes(subject: Subject, torque: bool) -> tuple[str, ...]:
         )
     if not np.isfinite(subject.no_load_speed).all():
         notes.append(
-            "Speed limits of some motors are unknown: bounded by the assumed ones of "
-            "gap/experiments/rig_room.py."
+            "Speed limits of some motors are unknown: joints are assumed to turn by at most "
+            f"{FASTEST:g} rad/s."
         )
     if knows_gains(subject):
         notes.append(
@@ -316,13 +317,4 @@ def fixed_subject(robot: str, overrides: Sequence[str] = ()) -> Subject:
     Raises:
         InputError: it cannot be read.
     """
-    free = load_subject(robot, overrides=overrides or None)
-    if not free.floating:
-        return free
-    blank = np.zeros(2)
-    signals = {f"position/{name}": blank for name in free.joints}
-    return load_subject(
-        robot,
-        [Log("rig", np.array([0.0, 1.0]), signals, Metadata(base="fixed"))],
-        overrides=overrides or None,
-    )
+    return load_subject(robot, overrides=overrides or None, base="fixed")

@@ -76,7 +76,7 @@ def diagnose(
     ]
     for check in checks:
         check.refuse()
-    say(f"conditioning {len(checks)} logs of {subject.name}")
+    say(f"comparing {len(checks)} logs with the model of {subject.name}")
     return diagnose_signals(
         [condition(log, subject) for log in tests],
         [condition(log, before) for log in healthy],
@@ -165,7 +165,7 @@ def diagnose_signals(
     if not signals:
         raise InputError("diagnose", "logs", None, "are missing: give at least one log")
     rules = rules or InferenceRules()
-    say("noise, discrepancy and the hypotheses of the catalogue")
+    say("trying every effect of the catalogue on what the model leaves over")
     told = judge_signals(
         signals,
         references,

@@ -26,6 +26,7 @@ def load_subject(
     logs: Sequence[Log] = (),
     *,
     overrides: Iterable[str] | None = None,
+    base: str = "",
 ) -> Subject:
     """Load the nominal model of a robot and make it fit logs.
 
@@ -36,6 +37,7 @@ def load_subject(
             that none of them knows are held still. What differs between logs is taken from the
             first here, and from each in `conditioning.condition`.
         overrides: of our design, `path=value` each; by default those of the logs.
+        base: `fixed` or `floating`; by default as the logs say, else as in the file.
 
     Returns:
         The robot.
@@ -48,7 +50,7 @@ def load_subject(
     metadata = [log.metadata for log in logs]
     named = not robot
     robot = str(robot) if robot else _agreed([m.robot for m in metadata], "robot", logs)
-    base = _agreed([m.base for m in metadata], "base", logs)
+    base = base or _agreed([m.base for m in metadata], "base", logs)
     if not robot:
         raise InputError(
             "robot",

@@ -77,7 +77,7 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
         InputError: names file, field, value and remedy; also for a task, design or preset that does
         not exist.
     """
-    path = resources.find("sim", name)
+    path = resources.find("sim", name, noun="campaign")
     data, where = read_yaml(path), short_name(path)
     check_keys(data, where, "", ("name", "preset", "groups"), ("processes",))
     processes = checked_whole_number(data.get("processes", 2), where, "processes", 1, 1000)
@@ -108,15 +108,18 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
         start = str(group.get("start") or "")
         before = {(run.design, run.seed) for *_, run in runs if run.group == start}
         names.add(group["name"])
-        task = load_task(str(group["task"])).name
+        with resources.named_in(where, f"groups.{g}.task"):
+            task = load_task(str(group["task"])).name
         preset = str(group.get("preset") or data["preset"])
-        load_preset(preset).stages(task)
+        with resources.named_in(where, f"groups.{g}.preset" if "preset" in group else "preset"):
+            load_preset(preset).stages(task)
         if not isinstance(group["designs"], list) or not group["designs"]:
             raise InputError(
                 where, f"groups.{g}.designs", group["designs"], "expects a list of designs"
             )
         for d, design in enumerate(group["designs"]):
-            load_robot(str(design))
+            with resources.named_in(where, f"groups.{g}.designs"):
+                load_robot(str(design))
             for seed in range(
                 checked_whole_number(group["seeds"], where, f"groups.{g}.seeds", 1, 1000)
             ):

@@ -17,6 +17,27 @@ from hyperleg_design.robot.kinematics.tree import build_tree
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
+    from hyperleg_design.robot.parameters.described import RobotDesign
+
+
+def robot_scene(design: RobotDesign) -> Scene:
+    """Prepare a picture of a robot of any family in its default posture.
+
+    Args:
+        design: one robot.
+
+    Returns:
+        The scene; it shows the whole robot, whatever its size.
+    """
+    tree = build_tree(design)
+    solids = robot_solids(design, angles=default_angles(tree), yaw=np.deg2rad(40), tree=tree)
+    places = np.array([solid.position for solid in solids] or [np.zeros(3)])
+    low, high = places.min(0), places.max(0)
+    middle, extent = (low + high) / 2, max(float((high - low).max()), 0.2)
+    camera = (tuple(middle + np.array([5.0 * extent, 0.0, extent])), tuple(middle))
+    return Scene(
+        tuple(solids), (), (), camera=camera, height=1.3 * extent, size=(1000, 820), font=24
+    )
 
 
 def dimensions_scene(design: Design) -> Scene:

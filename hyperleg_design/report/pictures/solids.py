@@ -31,6 +31,9 @@ MOTOR_COLOUR = {
     "toe": "#e07b39",
 }
 
+ROD = 0.04
+"""Radius of a rod that stands for a link without a drawing, over its length [-]."""
+
 
 def robot_solids(
     design: RobotDesign,
@@ -96,7 +99,8 @@ def robot_solids(
 def link_solids(
     design: RobotDesign, tree: Tree, *, opacity: float = 1.0, motors: bool = True
 ) -> dict[str, list[Solid]]:
-    """Collect the solids of each link in the link's own frame.
+    """Collect the solids of each link in the link's own frame; rods from joint to joint where
+    no link has a drawing, as in robots from a URDF.
 
     Args:
         design: one robot of any family.
@@ -137,7 +141,25 @@ def link_solids(
         add = _motor_solids if tree.hyperleg else _tree_motor_solids
         for name, solid in add(cast("Any", design), tree, opacity):
             solids[name].append(solid)
+    if not any(link.visuals for link in tree.links):
+        for joint in tree.joints:
+            solids[joint.parent] += _rod(np.array(joint.position), opacity)
+        for link in tree.links:
+            for pad in link.pads:
+                solids[link.name] += _rod(np.array(pad.position), opacity)
     return solids
+
+
+def _rod(end: np.ndarray, opacity: float) -> list[Solid]:
+    """A rod from the origin of a link to a point of it; none where they coincide."""
+    length = float(np.linalg.norm(end))
+    if length < 1e-6:
+        return []
+    along = end / length
+    aside = np.linalg.svd(along[None])[2][1]
+    rotation = np.column_stack([aside, np.cross(along, aside), along])
+    size = (ROD * length, length)
+    return [Solid("cylinder", size, rotation, end / 2, FRAME, min(opacity, 0.6))]
 
 
 def _motor_radius(mass: float) -> float:

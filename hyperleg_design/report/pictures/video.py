@@ -18,6 +18,8 @@ from hyperleg_design.writing import write_bytes
 
 KINDS = (".mp4", ".gif")
 """Endings of the files that can be written."""
+LARGEST = 4096
+"""Largest width or height of a frame [px], at which the frames drawn together take 1.3 GB."""
 _PART = 25
 """Frames drawn together, between two steps of the progress bar."""
 _GIF_COLOURS = 64
@@ -36,8 +38,9 @@ def check_video(path: Path, size: tuple[int, int]) -> None:
     if path.suffix.lower() not in KINDS:
         ending = " or ".join(KINDS)
         raise InputError("video", "--out", str(path), f"expects a file that ends in {ending}")
-    if min(size) < 64 or any(length % 2 for length in size):
-        raise InputError("video", "--size", list(size), "expects even numbers of at least 64")
+    if min(size) < 64 or max(size) > LARGEST or any(length % 2 for length in size):
+        remedy = f"expects even numbers within 64 .. {LARGEST}"
+        raise InputError("video", "--size", list(size), remedy)
     if path.suffix.lower() == ".mp4" and importlib.util.find_spec("imageio_ffmpeg") is None:
         raise InputError(
             "video",

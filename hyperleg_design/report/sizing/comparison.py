@@ -224,8 +224,8 @@ def _tree_entry(design: TreeDesign, whole: Mapping[str, Any], demand: bool) -> d
     forces = whole["contact_force"]
     return {
         **{k: whole[k] for k in (*same, "zonotope_to_box_volume")},
-        "leg_mass": whole["limb_mass"],
-        "leg_length": whole["standing_height"],
+        "leg_mass": whole["limb_mass"] if whole["limbs"] else "",
+        "leg_length": "" if whole["standing_height"] is None else whole["standing_height"],
         "contact_force": {
             k: v["force"] if v["force"] is not None else "" for k, v in forces.items()
         },

@@ -6,17 +6,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from hyperleg_design.evaluation import paper
-from hyperleg_design.report.page import Cell, Details, Heading, Section, Table
+from hyperleg_design.report.page import Cell, Heading, Section, Table
 from hyperleg_design.report.pictures import picture, scenes
 from hyperleg_design.report.sizing.comparison import Row, motor_rows, table_one
+from hyperleg_design.report.sizing.robot_page import parameters_content
 from hyperleg_design.report.study.context import Made
 from hyperleg_design.robot import ablation
-from hyperleg_design.robot.design import Design
 from hyperleg_design.robot.names import JOINTS
-from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.sizing.analysis import analyze
 from hyperleg_design.writing import write_json
 
@@ -279,19 +276,4 @@ def made_from(context: Context) -> Made:
     Returns:
         The section, and its headline numbers.
     """
-    design = context.design
-    labels: dict[str, int] = {}
-    rows = []
-    for path, rule in parameters.rules(Design).items():
-        origin = design.origins.get(path)
-        label = origin.label if origin else ""
-        labels[label] = labels.get(label, 0) + 1
-        value = design[path]
-        shown = ", ".join(f"{v:g}" for v in value) if isinstance(value, np.ndarray) else value
-        rows.append([path, shown, rule.unit, label, origin.source if origin else ""])
-    summary = ", ".join(f"{count} {label}" for label, count in sorted(labels.items()))
-    content = [
-        f"The design has {len(rows)} parameters: {summary}. Any of them can be set from the command line, in a file, or in Python, and can be an axis of a sweep.",
-        Details("All parameters", [Table(["parameter", "value", "unit", "label", "source"], rows)]),
-    ]
-    return Made(Section("What this page was made from", content))
+    return Made(Section("What this page was made from", parameters_content(context.design)))

@@ -97,7 +97,7 @@ def sweep_report(result: SweepResult) -> dict[str, Any]:
         result: the finished sweep.
 
     Returns:
-        `designs`, `rejected` and `files`.
+        `designs`, `rejected`, `rejected_because` (number of designs by reason) and `files`.
     """
     page = Page(
         title=f"Sweep {result.sweep.name}",
@@ -110,5 +110,6 @@ def sweep_report(result: SweepResult) -> dict[str, Any]:
     return {
         "designs": result.summary["designs"],
         "rejected": result.summary["rejected"],
+        "rejected_because": result.summary["rejected_because"],
         "files": files,
     }

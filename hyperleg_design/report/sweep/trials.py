@@ -52,7 +52,8 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
         result: a sweep after `run_trials`.
 
     Returns:
-        `designs`, `rejected`, `files`, and `text`, the best designs for a terminal.
+        `designs`, `rejected`, `rejected_because`, `files`, and `text`, the best designs for a
+        terminal.
     """
     import pandas as pd
 
@@ -105,6 +106,7 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
     return {
         "designs": result.summary["designs"],
         "rejected": result.summary["rejected"],
+        "rejected_because": result.summary["rejected_because"],
         "files": [str(folder / name) for name in (TRIALS, DESIGNS, SUMMARY)] + [str(target)],
         "text": unsimulated_text(trials) + best_text(sweep, chosen, objectives, commands),
     }

@@ -7,6 +7,9 @@ import socket
 
 from hyperleg_design.errors import InputError
 
+LAST_PORT = 65535
+"""Largest number of a port of TCP."""
+
 
 def check_installed() -> None:
     """Whether the packages of the extra `view` are there.
@@ -31,6 +34,8 @@ def check_port(host: str, port: int) -> None:
     Raises:
         InputError: the port is taken or not allowed, or the host is not this machine's.
     """
+    if not 1 <= port <= LAST_PORT:
+        raise InputError("view", "--port", port, f"expects a number within 1 .. {LAST_PORT}")
     try:
         family, kind, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         with socket.socket(family, kind) as probe:

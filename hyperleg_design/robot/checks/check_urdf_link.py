@@ -92,6 +92,9 @@ def _tensor(values: np.ndarray, mass: float, place: str, carried: bool) -> list[
     xx, yy, zz, xy, xz, yz = values
     principal = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     shown = ", ".join(f"{v:.4g}" for v in principal)
+    if not np.any(values) and carried:
+        message = f"has a mass of {mass:g} kg but no inertia, as a point has"
+        return [Finding("warning", place, message, "leave out the inertial of a mere frame")]
     if principal[0] <= 1e-12 * principal[2]:
         harmless = carried and principal[0] >= -1e-12 * principal[2]
         return [

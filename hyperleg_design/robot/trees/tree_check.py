@@ -181,6 +181,18 @@ def _check_motors(design: TreeDesign, where: str) -> None:
         motors.find_motor(str(reference.motor), where, f"reference.{name}.motor")
 
 
+def _replaced(design: TreeDesign) -> list[str]:
+    """Motors whose mass, with their gears, the links gain over that of the reference build."""
+    if design.masses.law != "components":
+        return []
+    return [
+        name
+        for name, actuator in design.actuator_sections.items()
+        if np.any(np.asarray(actuator.motor) != design.reference_sections[name].motor)
+        or np.any(np.asarray(actuator.gear) != design.reference_sections[name].gear)
+    ]
+
+
 def _check_bodies(design: TreeDesign, where: str) -> None:
     masses = limb_masses.limb_masses(design).links
     for name, body in masses.items():
@@ -191,7 +203,15 @@ def _check_bodies(design: TreeDesign, where: str) -> None:
         )
         remedy = (
             "are principal moments of inertia that no body has: none is negative, and the largest "
-            "is at most the sum of the other two; check gyration, inertia and the units"
+            "is at most the sum of the other two; "
+        )
+        taken = [n for n in _replaced(design) if design.actuator_sections[n].housed_in == name]
+        remedy += (
+            f"the link as it is described cannot contain the reference motor and gear of "
+            f"{', '.join(taken)}, which are taken out of it; correct one of the two, or keep all "
+            "masses as they are with masses: {law: fixed}"
+            if taken
+            else "check gyration, inertia and the units"
         )
         refuse(where, f"links.{name}", real, principal.round(9), remedy)
     fixed = {j.child for j in design.all_joints.values() if j.type == "fixed"}

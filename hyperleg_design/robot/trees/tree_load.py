@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from typing_extensions import override
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters import fields as parameter_fields
@@ -58,25 +59,11 @@ class CheckedTreeDesign(TreeDesign):
     def __post_init__(self) -> None:
         check_tree_design(self)
 
-    def with_values(
-        self, values: Mapping[str, Any], where: str = "override", label: str = "user"
-    ) -> Any:
-        """Copy the design with other values of some leaves.
-
-        A published total mass is no longer checked where the mass of a link is replaced.
-
-        Args:
-            values: numbers, texts, or arrays of either with the batch in front, by dotted path.
-            where: what to name in errors.
-            label: origin of the new values.
-
-        Returns:
-            The validated copy.
-        """
-        lapses = any(str(p).startswith("links.") and str(p).endswith(".mass") for p in values)
-        if lapses and "masses.expected_total" not in values:
-            values = {**values, "masses.expected_total": 0.0}
-        return super().with_values(values, where, label)
+    @override
+    def lapsed(self, values: Mapping[str, Any]) -> dict[str, float]:
+        total = "masses.expected_total"
+        replaced = any(path.startswith("links.") and path.endswith(".mass") for path in values)
+        return {total: 0.0} if replaced and total not in values and np.any(self[total]) else {}
 
     def __reduce__(self) -> Any:
         plain = {p: v for p, v in parameters.leaves(self).items() if isinstance(v, np.ndarray)}

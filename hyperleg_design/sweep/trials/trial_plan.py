@@ -7,6 +7,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.policy import load_policy
@@ -21,6 +22,8 @@ from hyperleg_design.sweep.spaces.definition import Sweep
 
 SEEDS = 3
 """Trainings that are evaluated on each design."""
+LATER = ("uneven_floor",)
+"""Settings of protocols that came after trials were committed; 0 where they are not used."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,16 @@ class Plan:
     """Policies by protocol and variant."""
     digest: str
     """SHA-256 of the protocols and of the policies' contents."""
+
+
+def _settings(protocol: Protocol) -> dict[str, Any]:
+    """A protocol written out, without what came later and is not used."""
+    return {
+        name: {k: v for k, v in value.items() if v or k not in LATER}
+        if isinstance(value, dict)
+        else value
+        for name, value in protocol_mapping(protocol).items()
+    }
 
 
 def plan(
@@ -64,7 +77,7 @@ def plan(
         for protocol in run
         for variant, robot in robots.items()
     }
-    digest = hashlib.sha256(json.dumps([protocol_mapping(p) for p in run], sort_keys=True).encode())
+    digest = hashlib.sha256(json.dumps([_settings(p) for p in run], sort_keys=True).encode())
     for (kind, variant), files in chosen.items():
         for file in files:
             load_policy(file.path)  # a broken file is told before hours of work

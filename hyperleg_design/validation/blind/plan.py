@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.validation.blind.recorder import Recorder
 from hyperleg_design.validation.blind.wrong import CATALOGUE, ODDITIES, WALKING_ONLY
 
@@ -90,11 +91,14 @@ def plan_cases(
         duration: range of the logs' lengths [s].
 
     Raises:
-        ValueError: an unknown plant, or none.
+        InputError: an unknown plant, none, or fewer than one case.
     """
     unknown = [p for p in plants if p not in PLANTS]
     if unknown or not plants:
-        raise ValueError(f"plants {unknown or 'missing'}: choose of {', '.join(PLANTS)}")
+        known = ", ".join(PLANTS)
+        raise InputError("blind", "plants", unknown or None, f"choose of {known}")
+    if count < 1:
+        raise InputError("blind", "cases", count, "expects at least 1")
     rng = np.random.default_rng([seed, 0])
     kinds = _apportioned(KINDS, count, rng)
     share = {p: PLANTS[p] for p in plants}

@@ -191,6 +191,7 @@ def make_here(
         if (out / CASES).is_dir():
             return seal
     making = out / MAKING
+    plans = plan_cases(cases, seed, plants=plants, duration=duration)
     if not making.is_dir():
         check_output_folder(out)
         (making / CASES).mkdir(parents=True)
@@ -201,7 +202,6 @@ def make_here(
             f"{out}: holds the beginning of another trial; choose another folder or remove it"
         )
     (out / ".hyperleg").write_text("a blind trial\n")
-    plans = plan_cases(cases, seed, plants=plants, duration=duration)
     waiting = [p for p in plans if not (making / CASES / _name(p)).is_dir()]
     with _bar(cases, cases - len(waiting), "cases", progress) as bar:
         for _ in spread(_make_one, [(p, str(making)) for p in waiting], workers):

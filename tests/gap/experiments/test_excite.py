@@ -3,6 +3,7 @@ import csv
 import numpy as np
 import pandas
 import pytest
+import yaml
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.experiments import excite as module
@@ -11,6 +12,7 @@ from hyperleg_design.gap.experiments.designed_experiment import CLEAR
 from hyperleg_design.gap.experiments.excite import design_experiment, excite, fixed_subject
 from hyperleg_design.gap.experiments.pair import apart
 from hyperleg_design.gap.signals.loading import load_subject
+from tests.robot.tree_files import leg_file
 
 
 def test_targets_stay_inside_the_joints_limits_and_start_and_end_gently(made):
@@ -107,7 +109,12 @@ def test_greedy_choice_on_a_made_up_case():
     assert module.shortest_set(grams, {"a": 10.0, "b": 5.0, "c": 20.0}, blocks, ()) == ("b", "c")
 
 
-def test_a_floating_robot_is_put_on_a_rig():
+def test_a_floating_robot_is_put_on_a_rig_where_it_needs_no_pads(tmp_path):
     assert not fixed_subject("hyperleg").floating
+    robot = leg_file(trunk={"link": "base", "motion": "floating"}, pads={})
+    (tmp_path / "leg.yaml").write_text(yaml.safe_dump(robot))
+    held = fixed_subject(str(tmp_path / "leg.yaml"))
+    assert not held.floating
+    assert held.joints == ("hip", "knee")
     with pytest.raises(InputError, match="base"):
         design_experiment(load_subject("hyperleg"))

@@ -45,16 +45,22 @@ def test_the_rewards_are_switched_one_at_a_time() -> None:
 @pytest.mark.parametrize(
     ("change", "field"),
     [
-        ({"preset": "desktop"}, ""),
-        ({"groups": [{**DATA["groups"][0], "preset": "desktop"}]}, ""),
+        ({"preset": "desktop"}, "preset"),
+        ({"groups": [{**DATA["groups"][0], "preset": "desktop"}]}, "groups.0.preset"),
         ({"runs": 3}, "runs"),
         ({"processes": 0}, "processes"),
         ({"groups": []}, "groups"),
         ({"groups": [{**DATA["groups"][0], "compared": "no"}]}, "groups.0.compared"),
         ({"groups": [{**DATA["groups"][0], "ship": "some"}]}, "groups.0.ship"),
         ({"groups": [{"name": "a", "task": "walk", "designs": ["toe"]}]}, "groups.0.seeds"),
-        ({"groups": [{"name": "a", "task": "walk", "designs": ["toes"], "seeds": 1}]}, ""),
-        ({"groups": [{"name": "a", "task": "swim", "designs": ["toe"], "seeds": 1}]}, ""),
+        (
+            {"groups": [{"name": "a", "task": "walk", "designs": ["toes"], "seeds": 1}]},
+            "groups.0.designs",
+        ),
+        (
+            {"groups": [{"name": "a", "task": "swim", "designs": ["toe"], "seeds": 1}]},
+            "groups.0.task",
+        ),
         (
             {"groups": [{"name": "a", "task": "goal_paper", "designs": ["toe"], "seeds": 1}]},
             "tasks",

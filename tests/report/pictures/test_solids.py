@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.report.pictures.solids import PAD, robot_solids
+from hyperleg_design.report.pictures.solids import PAD, link_solids, robot_solids
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.kinematics.tree import build_tree
+from tests.robot.tree_files import leg
 
 
 @pytest.fixture(scope="module")
@@ -37,3 +39,20 @@ def test_only_installed_motors_are_drawn(design):
         with_motors = len(robot_solids(variant, motors=True))
         counts[name] = with_motors - len(robot_solids(variant, motors=False))
     assert counts == {"toe": 14, "toe_locked": 14, "toe_removed_matched": 12, "toe_removed": 12}
+
+
+def test_robots_without_drawings_get_rods_from_joint_to_joint_and_to_their_pads():
+    whole = leg()
+    tree = build_tree(whole)
+    solids = link_solids(whole, tree, motors=False)
+    ends = {
+        name: [2 * s.position for s in own if s.kind == "cylinder"] for name, own in solids.items()
+    }
+    assert np.allclose(ends["thigh"], [[0, 0, -0.2]])
+    assert np.allclose(ends["shank"], [[0, 0, -0.2]])
+    assert ends["base"] == []  # the hip is at its origin
+    for own in solids.values():
+        for rod in (s for s in own if s.kind == "cylinder"):
+            along = rod.rotation @ [0, 0, rod.size[1]]
+            assert np.allclose(along, 2 * rod.position)
+            assert np.linalg.det(rod.rotation) == pytest.approx(1)

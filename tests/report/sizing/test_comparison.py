@@ -7,6 +7,7 @@ from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.report.sizing import comparison
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.load import load_robot
+from tests.robot.tree_files import leg
 
 
 @pytest.fixture(scope="module")
@@ -81,3 +82,9 @@ def test_designs_are_walked_by_the_policies_of_their_toe_layout(monkeypatch):
     assert "toe.mass" not in found[1]["policy"]
     for entry in found:
         assert entry["fell"]["low"] <= entry["fell"]["mean"] <= entry["fell"]["high"]
+
+
+def test_a_robot_described_as_a_whole_has_no_mass_of_a_leg_and_without_pads_no_length():
+    whole = leg(pads={}, trunk={"link": "base", "motion": "floating"})
+    (entry,) = comparison.compare([whole]).values()
+    assert (entry["leg_mass"], entry["leg_length"]) == ("", "")

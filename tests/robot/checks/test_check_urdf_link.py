@@ -8,10 +8,9 @@ from tests.robot.checks.urdfs import GOOD
 
 def test_a_point_fixed_to_a_link_is_only_a_doubt():
     point = '<inertial><mass value="0.1"/><inertia ixx="0" iyy="0" izz="0"/></inertial>'
-    assert [
-        f.severity
-        for f in check_urdf(GOOD.replace('<link name="tip"/>', f'<link name="tip">{point}</link>'))
-    ] == ["warning"]
+    (finding,) = check_urdf(GOOD.replace('<link name="tip"/>', f'<link name="tip">{point}</link>'))
+    assert finding.severity == "warning"
+    assert "mass of 0.1 kg but no inertia" in finding.message
 
 
 def test_weight_on_a_fixed_link_counts_for_the_moving_one():

@@ -129,3 +129,12 @@ def test_bad_trees_are_refused_with_place_and_remedy(sections, words):
         leg(**sections)
     for word in ["leg.yaml", *words]:
         assert word in str(caught.value)
+
+
+def test_a_link_that_cannot_contain_the_motor_taken_out_of_it_names_that_motor():
+    small = {"mass": 1.0, "com": [0, 0, -0.1], "gyration": [0.01, 0.01, 0.01]}
+    sections = with_part("links", thigh=small)
+    with pytest.raises(InputError, match=r"links.thigh.*motor and gear of knee.*law: fixed"):
+        leg(**sections).with_values({"actuators.knee.gear": 3})
+    fixed = leg(**sections, masses={"law": "fixed"}).with_values({"actuators.knee.gear": 3})
+    assert fixed["actuators.knee.gear"] == 3

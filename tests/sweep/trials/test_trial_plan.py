@@ -1,8 +1,11 @@
+import dataclasses
+
 import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.protocol import load_protocol
 from hyperleg_design.sweep.space import sweep_from_mapping
+from hyperleg_design.sweep.trials.stored import stored, stored_names
 from hyperleg_design.sweep.trials.trial_plan import kind_of, plan
 
 SWEEP = sweep_from_mapping(
@@ -41,3 +44,17 @@ def test_two_protocols_of_a_kind_and_a_protocol_that_is_not_there_are_refused():
 def test_a_folder_without_policies_is_refused(tmp_path):
     with pytest.raises(InputError):
         plan(SWEEP, ["walk"], policies=tmp_path)
+
+
+def test_the_committed_trials_are_of_the_protocols_and_policies_of_today():
+    for name in stored_names():
+        committed = stored(name)
+        assert plan(committed.sweep, committed.sweep.evaluated).digest == committed.plan
+
+
+def test_a_floor_that_is_not_even_is_another_protocol():
+    walk = load_protocol("walk")
+    rough = dataclasses.replace(
+        walk, randomisation=dataclasses.replace(walk.randomisation, uneven_floor=0.03)
+    )
+    assert plan(SWEEP, [rough], seeds=1).digest != plan(SWEEP, [walk], seeds=1).digest

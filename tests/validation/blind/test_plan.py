@@ -2,6 +2,7 @@ from collections import Counter
 
 import pytest
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.validation.blind.plan import KINDS, ONE_JOINT_CANNOT, plan_cases
 from hyperleg_design.validation.blind.wrong import CATALOGUE, ODDITIES, WALKING_ONLY
 
@@ -30,5 +31,7 @@ def test_proportions_and_rounds():
 
 def test_plants_can_be_kept_apart():
     assert {p.plant for p in plan_cases(30, 0, plants=("other",))} == {"other"}
-    with pytest.raises(ValueError, match="choose of"):
+    with pytest.raises(InputError, match=r"moon.*choose of"):
         plan_cases(3, 0, plants=("moon",))
+    with pytest.raises(InputError, match="cases = 0"):
+        plan_cases(0, 0)
