@@ -75,6 +75,8 @@ class Effect(ABC):
     """Whether a robot's model describes it, so that there may also be less of it than described."""
     rough: ClassVar[Mapping[str, float]] = {}
     """Standard deviation over the value, of parameters that follow from a trace at first order."""
+    stretched: ClassVar[bool] = False
+    """Whether a load, with all of its noise, shapes the trace; the first parameter sizes it."""
     scales: ClassVar[str] = ""
     """`motor` or `joint` where it scales the torque that the residual of motion trusts, of the
     motor or joint at which it sits; empty where it scales none."""
@@ -272,19 +274,6 @@ class Effect(ABC):
 
         Returns:
             By name of the residual `(t, rows)`; None by default, for that of `trace`.
-        """
-        return None
-
-    def noise_inertia(self, location: str, subject: Subject, values: np.ndarray) -> float | None:
-        """Compute the inertia through which its trace takes noise of accelerations along.
-
-        Args:
-            location: one of `locations`.
-            subject: the robot.
-            values: of the parameters `(parameters,)`.
-
-        Returns:
-            The inertia over the first parameter [kg m^2]; None where its trace takes none along.
         """
         return None
 

@@ -217,7 +217,7 @@ def _of_acceleration(filtered_log: FilteredLog, row: int, low: float, high: floa
     square = _shaken(signals)
     stiff = _feedback(filtered_log, row)
     turned = (2 * np.pi) ** 4 * (high**5 - low**5) / 5
-    own = inertias(signals)[one.column][np.arange(len(square)) // _every(signals)]
+    own = inertias_at(signals, one.column)
     found = turned * np.sum(own**2 * square, -1) + stiff**2 * (high - low) * square[:, one.column]
     return np.asarray(
         _smoothed(2 * signals.step * found, 0.5 / (high - low) / signals.step)
@@ -267,6 +267,62 @@ def of_acceleration(filtered_log: FilteredLog, row: int) -> tuple[np.ndarray, np
     return np.concatenate(feigned), np.concatenate(rate)
 
 
+def of_load(filtered_log: FilteredLog, row: int) -> np.ndarray:
+    """Compute the noise of the needed torque, beside that of accelerations: what sensors of forces
+    under the feet leave, and forces that change between two samples.
+
+    Above its cutoff a residual and the needed torque hold noise alone. The less of it is in their
+    sum, the torque of the drives, the more of it is in both.
+
+    Args:
+        filtered_log: of one log.
+        row: one of its rows of motion.
+
+    Returns:
+        Variance of each sample of the row that such noise makes `(samples,)` [Nm^2].
+    """
+    signals, one, mask = filtered_log.signals, filtered_log.rows[row], filtered_log.mask[row]
+    residual, needed = (
+        np.where(mask, np.nan_to_num(values[:, one.column]), 0.0)
+        for values in (signals.residual[one.residual_name], signals.rigid)
+    )
+    own, its, both = (
+        _white(values, mask, one.cutoff, signals.step)
+        for values in (residual, needed, residual + needed)
+    )
+    if own <= 0 or not filtered_log.bands[row]:
+        return np.zeros(filtered_log.count(row))
+    shared = float(np.clip(0.5 * (own + its - both) / own, 0.0, 1.0))
+    return np.concatenate(
+        [
+            np.full(len(band.kept), shared * white * (band.high - band.low))
+            for band, white in zip(
+                filtered_log.bands[row],
+                _capped(filtered_log, row, residual, own),
+                strict=True,
+            )
+        ]
+    )
+
+
+def shaken_accelerations(signals: Signals, rng: np.random.Generator) -> np.ndarray:
+    """Draw accelerations that noise of the positions feigns, below the smoother's crossover.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        rng: source of the noise.
+
+    Returns:
+        The accelerations `(t, n)` [rad/s^2].
+    """
+    if signals.noise is None or signals.bandwidth is None:
+        return np.zeros_like(signals.acceleration)
+    white = np.sqrt(_shaken(signals)) * rng.normal(size=signals.position.shape)
+    frequency = np.fft.rfftfreq(len(white), signals.step)[:, None]
+    passed = -((2 * np.pi * frequency) ** 2) * (frequency < np.nan_to_num(signals.bandwidth))
+    return np.fft.irfft(passed * np.fft.rfft(white, axis=0), len(white), axis=0)
+
+
 def _share(square: np.ndarray, speed: np.ndarray) -> float:
     """Share of squares `(s,)` that goes with those of speed over their mean `(s,)`, from 0 to 1, by
     least squares.
@@ -284,6 +340,20 @@ def inertias(signals: Signals) -> np.ndarray:
     some = np.nan_to_num(signals.position[:: _every(signals)])
     columns = rigid.accelerating(signals.subject, some, np.eye(some.shape[1]))
     return np.stack(columns, -1).swapaxes(0, 1)
+
+
+def inertias_at(signals: Signals, joint: int) -> np.ndarray:
+    """Compute the torque at one joint over the acceleration of each.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        joint: index of the joint.
+
+    Returns:
+        At every tick `(t, n)` [kg m^2].
+    """
+    own = inertias(signals)[joint]
+    return np.asarray(own[np.arange(len(signals.time)) // _every(signals)])
 
 
 def _every(signals: Signals) -> int:

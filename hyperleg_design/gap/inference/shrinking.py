@@ -1,15 +1,14 @@
-"""Noise of the logs that belts take along in their traces, and what keeps them from explaining it
-away.
+"""Noise of the logs that belts and gears take along in their traces, and what keeps them from
+explaining it away.
 
-Noise of accelerations is in the residual, and in the load that stretches a belt, too: with encoders
-at the joints a belt's trace takes the share x = J compliance omega^2 of it along, all of it where
-the rotor would ring. Noise of which a share f is that of accelerations shrinks to f (1 - x)^2 + 1 -
-f, and least squares would find a belt in any noise, that rings just below the smoother's crossover.
-
-With encoders at the rotors, a belt that stiffens, or has its joint's friction behind it, is
-stretched by the torque that its motor gives, noise included: least squares would find a belt in the
-noise of torques, too. How much of it the trace takes along is measured: white noise is added to the
-torque, and what comes of it in the trace is compared with it, band by band.
+Noise of accelerations, and of forces under the feet, is in the residual, and in the load that
+stretches a belt, too: with encoders at the joints a belt's trace takes the share x = J compliance
+omega^2 of it along, all of it where the rotor would ring. Noise of which a share f is in the load
+shrinks to f (1 - x)^2 + 1 - f, and least squares would find a belt in any noise. With encoders at
+the rotors, a belt that stiffens, or has its joint's friction behind it, is stretched by the torque
+that its motor gives, noise included. How much a trace takes along is measured: noise is added to
+the log, and what comes of it in the trace is compared with what comes of it in the residual, band
+by band.
 """
 
 from __future__ import annotations
@@ -24,6 +23,8 @@ from hyperleg_design.gap.effects.placing import motor_strength
 from hyperleg_design.gap.inference import noise_model
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from hyperleg_design.gap.effects.effect import Effect
     from hyperleg_design.gap.inference.samples import Samples
     from hyperleg_design.gap.signals.signals import Signals
@@ -35,8 +36,14 @@ SHAKEN = 0.005
 of current sensors)."""
 SEED = 11
 """Of that noise."""
+SMALLEST = 0.05
+"""Usual sizes at which what a trace takes along is measured, at least [-]: of nothing it is 0
+(assumed)."""
+ACCELERATION, LOAD, TORQUE = "acceleration", "load", "torque"
+"""Kinds of noise: of accelerations, of other parts of the needed torque, and of the motor's."""
 
-_SHAKEN: WeakKeyDictionary[Signals, dict[int, tuple[Signals, np.ndarray]]] = WeakKeyDictionary()
+_Kind = tuple[str, int, int]
+_SHAKEN: WeakKeyDictionary[Signals, dict[_Kind, tuple[Signals, np.ndarray]]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,13 +72,15 @@ class Shrinking:
         maximum.
         """
         left = self._left(phi)
-        first = self.part * (self.square * phi - self.slope) / left
-        second = 2 * first**2 - self.part * self.square / left
+        part = np.where(2 * self.slope * phi >= self.square * phi**2, self.part, 0.0)
+        first = part * (self.square * phi - self.slope) / left
+        second = 2 * first**2 - part * self.square / left
         return float(self.number @ first), max(float(self.number @ second), 0.0)
 
     def _left(self, phi: float) -> np.ndarray:
+        """Variance of each sample's noise that is left; noise that grows gains nothing by it."""
         shrunk = 1 - 2 * self.slope * phi + self.square * phi**2
-        return np.maximum(self.part * shrunk + 1 - self.part, LEAST**2)
+        return np.clip(self.part * shrunk + 1 - self.part, LEAST**2, 1.0)
 
 
 def shrinking(
@@ -87,10 +96,9 @@ def shrinking(
         usual: sizes of its parameters `(k,)`.
         values: of them `(k,)`.
     """
-    subject = samples.filtered_logs[0].signals.subject
-    inertia = effect.noise_inertia(location, subject, values)
-    if inertia is None and not effect.holds_torque(values):
+    if not effect.stretched:
         return None
+    subject = samples.filtered_logs[0].signals.subject
     motor = subject.motors.index(location)
     joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
     keys = [(row.residual_name, row.column) for row in samples.rows]
@@ -98,92 +106,110 @@ def shrinking(
         return None
     row = keys.index(("motion", joint))
     own = np.flatnonzero(samples.row == row)
-    part, rate = _of_acceleration(samples, motor, joint)
-    if inertia is not None:
-        slope = rate[own] * inertia * usual[0]
-        return Shrinking(0, slope, slope**2, part[own], samples.share[own], row)
-    size = float(values[0] / usual[0])
-    if size <= 0:
-        return None
-    slope, square = _of_torque(samples, effect, location, values, joint, own)
-    return Shrinking(0, slope / size, square / size**2, 1 - part[own], samples.share[own], row)
+    size = max(float(values[0] / usual[0]), SMALLEST)
+    values = np.array([size * usual[0], *values[1:]])
+    kinds = ACCELERATION, TORQUE if effect.holds_torque(values) else LOAD
+    slope, square = taken(samples, effect, location, values, (motor, joint), kinds)
+    parts = _parts(samples, joint, kinds)
+    part = np.maximum(parts.sum(0), 1e-300)
+    group = samples.group
+    slope, square = ((parts * each[:, group]).sum(0) / part for each in (slope, square))
+    part, slope, square = part[own], slope[own] / size, square[own] / size**2
+    return Shrinking(0, slope, square, part, samples.share[own], row)
 
 
-def _of_acceleration(samples: Samples, motor: int, joint: int) -> tuple[np.ndarray, np.ndarray]:
-    """Share of each sample's noise that is that of accelerations, and the mean square of its
-    frequency, as far as it is in the load of a motor's belt `(S,)` each.
+def _parts(samples: Samples, joint: int, kinds: Sequence[str]) -> np.ndarray:
+    """Shares of each sample's noise in a joint's row that are of each kind `(kinds, S)`; all noise
+    that is not of accelerations may be of torques.
     """
-    part, rate = np.zeros(len(samples.row)), np.zeros(len(samples.row))
+    part = np.zeros((len(kinds), len(samples.row)))
     for log, places in zip(samples.filtered_logs, samples.where, strict=True):
         for place, row in enumerate(log.rows):
-            if (row.residual_name, row.column) == ("motion", joint):
-                feigned, squared = noise_model.of_acceleration(log, place)
-                part[places[place]] = feigned
-                rate[places[place]] = squared * _carried(log.signals, motor, joint)
-    return np.minimum(part / samples.floor**2, 1.0), rate
+            if (row.residual_name, row.column) != ("motion", joint):
+                continue
+            at, square = places[place], samples.floor[places[place]] ** 2
+            of_accelerations = np.minimum(noise_model.of_acceleration(log, place)[0] / square, 1.0)
+            loads = noise_model.of_load(log, place) / square if LOAD in kinds else np.inf
+            others = np.minimum(loads, 1 - of_accelerations)
+            for one, kind in zip(part, kinds, strict=True):
+                one[at] = of_accelerations if kind == ACCELERATION else others
+    return part
 
 
-def _carried(signals: Signals, motor: int, joint: int) -> float:
-    """Share of the noise of accelerations in a joint's residual that is in the load of its motor's
-    belt, too, through which it comes back.
-    """
-    if signals.noise is None:
-        return 0.0
-    level = np.nan_to_num(signals.noise) ** 2
-    whole = noise_model.inertias(signals)
-    load = np.tensordot(
-        signals.subject.motor_from_joint[motor], whole - signals.subject.armature[:, None], 1
-    )
-    both, all_of_it = (
-        float(np.mean(whole[joint] * load @ level)),
-        float(np.mean(whole[joint] ** 2 @ level)),
-    )
-    return float(signals.subject.joint_from_motor[joint, motor]) * both / max(all_of_it, 1e-300)
-
-
-def _of_torque(
+def taken(
     samples: Samples,
     effect: Effect,
     location: str,
     values: np.ndarray,
-    joint: int,
-    own: np.ndarray,
+    at: tuple[int, int],
+    kinds: Sequence[str],
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Share of a motor's noise that a trace takes along at a joint, and the mean square of what it
-    makes of it, over the noise's, in the band of each of the samples `own` `(k,)` each.
+    """Measure how much of each kind of noise a trace takes along.
+
+    Args:
+        samples: of the logs.
+        effect: of the catalogue.
+        location: its place.
+        values: of its parameters `(k,)`.
+        at: its motor, and the joint in whose residual the noise is.
+        kinds: of noise, of `ACCELERATION`, `LOAD` and `TORQUE`.
+
+    Returns:
+        The share of it, and the mean square of what the trace makes of it over the noise's, by
+        group of samples `(kinds, G)` each.
     """
-    motor = samples.filtered_logs[0].signals.subject.motors.index(location)
+    motor, joint = at
 
-    def taken(signals: Signals) -> dict[str, np.ndarray]:
-        shaken, noise = _shaken(signals, motor)
-        calm, moved = (
-            effect.trace(log, location, values[None])["motion"][0] for log in (signals, shaken)
-        )
-        both = np.zeros((2, *calm.shape))
-        both[0, :, joint] = (moved - calm)[:, joint]
-        both[1, :, joint] = noise * signals.subject.joint_from_motor[joint, motor]
-        return {"motion": both}
+    def trace(signals: Signals) -> dict[str, np.ndarray]:
+        calm = effect.trace(signals, location, values[None])["motion"][0]
+        both = np.zeros((2, len(kinds), *calm.shape))
+        for place, kind in enumerate(kinds):
+            shaken, noise = _shaken(signals, kind, motor, joint)
+            moved = effect.trace(shaken, location, values[None])["motion"][0]
+            both[0, place, :, joint] = (moved - calm)[:, joint]
+            both[1, place, :, joint] = noise
+        return {"motion": both.reshape(-1, *calm.shape)}
 
-    columns = samples.columns(taken, 2)
+    columns = samples.columns(trace, 2 * len(kinds))
     if columns is None:
-        return np.zeros(len(own)), np.zeros(len(own))
-    trace, noise = columns[:, own]
-    group = samples.group[own]
+        return np.zeros((len(kinds), samples.groups)), np.zeros((len(kinds), samples.groups))
+    moved, noise = columns[: len(kinds)], columns[len(kinds) :]
     shared, squares, whole = (
-        np.bincount(group, samples.share[own] * product)
-        for product in (trace * noise, trace**2, noise**2)
+        np.array([np.bincount(samples.group, samples.share * each) for each in products])
+        for products in (moved * noise, moved**2, noise**2)
     )
     whole = np.maximum(whole, 1e-300)
-    return (shared / whole)[group], (squares / whole)[group]
+    return shared / whole, squares / whole
 
 
-def _shaken(signals: Signals, motor: int) -> tuple[Signals, np.ndarray]:
-    """A log with white noise in a motor's torque, and that noise `(t,)` [Nm]."""
+def _shaken(signals: Signals, kind: str, motor: int, joint: int) -> tuple[Signals, np.ndarray]:
+    """A log with noise of one kind, and what it leaves in a joint's residual `(t,)` [Nm]."""
     known = _SHAKEN.setdefault(signals, {})
-    if motor not in known:
-        rng = np.random.default_rng([SEED, motor])
-        noise = SHAKEN * motor_strength(signals.subject, motor) * rng.normal(size=len(signals.time))
+    key = kind, motor, joint
+    if key in known:
+        return known[key]
+    subject = signals.subject
+    rng = np.random.default_rng([SEED, motor])
+    white = SHAKEN * motor_strength(subject, motor) * rng.normal(size=len(signals.time))
+    if kind == ACCELERATION:
+        turned = noise_model.shaken_accelerations(signals, rng)
+        needed = np.stack(
+            [
+                np.sum(noise_model.inertias_at(signals, j) * turned, -1)
+                for j in range(turned.shape[1])
+            ],
+            -1,
+        )
+        acceleration = signals.acceleration + turned
+        shaken = replace(signals, acceleration=acceleration, rigid=signals.rigid + needed)
+        known[key] = shaken, -needed[:, joint]
+    elif kind == LOAD:
+        needed = signals.rigid.copy()
+        needed[:, joint] += white
+        known[key] = replace(signals, rigid=needed), -white
+    else:
         believed = signals.believed.copy()
-        believed[:, motor] += noise
-        known[motor] = replace(signals, believed=believed), noise
-    return known[motor]
+        believed[:, motor] += white
+        shaken = replace(signals, believed=believed)
+        known[key] = shaken, white * subject.joint_from_motor[joint, motor]
+    return known[key]

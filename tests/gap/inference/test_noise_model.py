@@ -4,7 +4,7 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.inference.noise_model import expected
+from hyperleg_design.gap.inference.noise_model import expected, of_load
 from hyperleg_design.gap.inference.rules import NoiseRules
 from hyperleg_design.gap.signals.filtering import filtered_log
 
@@ -100,3 +100,25 @@ def test_noise_of_one_joint_is_in_the_balances_of_those_that_it_shakes(jittering
         floors.append(expected(dataclasses.replace(jittering, signals=noisier), NoiseRules()))
     hip = next(i for i, row in enumerate(jittering.rows) if row.name == "hip")
     assert floors[1][hip].max() > 2 * floors[0][hip].max()
+
+
+def test_noise_of_the_needed_torque_is_told_from_that_of_the_drives(one):
+    row = next(i for i, r in enumerate(one.rows) if r.residual_name == "motion")
+    joint, quiet = one.rows[row].column, of_load(one, row)
+    noise = 0.3 * np.random.default_rng(3).standard_normal(len(one.signals.time))
+    made = one.sample(row, noise[None])[0]
+    needed, residual = one.signals.rigid.copy(), one.signals.residual["motion"].copy()
+    residual[:, joint] -= noise
+    of_drives = dataclasses.replace(one.signals, residual={"motion": residual})
+    needed[:, joint] += noise
+    of_forces = dataclasses.replace(of_drives, rigid=needed)
+    told = [
+        of_load(dataclasses.replace(one, signals=signals), row)
+        for signals in (of_forces, of_drives)
+    ]
+    for band in np.unique(one.labels(row)[0]).tolist()[1:]:
+        mine = one.labels(row)[0] == band
+        added = np.mean(made[mine] ** 2)
+        # interpolation onto even ticks is allowed for
+        assert np.all((0.9 * added < told[0][mine]) & (told[0][mine] < 1.7 * added))
+        assert np.all(told[1][mine] < 0.1 * added + quiet[mine])

@@ -6,7 +6,8 @@ import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.endogenous import factor
-from hyperleg_design.gap.inference.shrinking import Shrinking
+from hyperleg_design.gap.inference.shrinking import LOAD, TORQUE, Shrinking, taken
+from hyperleg_design.gap.model.machine import rotor
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 
 BELT = "transmission_elasticity"
@@ -20,7 +21,7 @@ def shrinking_by(slope, square, part, number):
 def test_noise_that_shrinks_gains_nothing():
     one = shrinking_by([0.3, 0.5], [0.09, 0.4], [1.0, 0.6], [20.0, 10.0])
     assert one.log(0.0) == 0
-    for phi in (-1.0, 0.0, 1.0):
+    for phi in (0.5, 1.0):
         step = 1e-4
         first, second = one.slopes(phi)
         assert first == pytest.approx(
@@ -34,15 +35,38 @@ def test_noise_that_shrinks_gains_nothing():
     )  # what the noise's own density gains by it
 
 
+@pytest.mark.parametrize("phi", [-1.0, 3.0])
+def test_noise_that_a_trace_adds_gains_nothing_either(phi):
+    one = shrinking_by([0.3, 0.0], [1.09, 0.4], [1.0, 0.6], [20.0, 10.0])
+    assert one.log(phi) == 0
+    assert one.slopes(phi) == (0, 0)
+
+
 def test_belts_pay_where_encoders_at_the_joints_bring_noise_into_their_load(robot_files):
     samples = diagnosed.evidence(robot_files["servos"], diagnosed.stamped_badly(0)).samples
-    at_joints, at_rotors = (
-        factor(samples, BELT, "knee", USUAL, np.array([0.004, 0.05, side, 0.0, 0.0]))
-        for side in (0.0, 1.0)
+    one = factor(samples, BELT, "knee", USUAL, np.array([0.004, 0.05, 0.0, 0.0, 0.0]))
+    assert isinstance(one, Shrinking)
+    assert one.log(0.5) < 0
+
+
+def test_noise_of_a_load_comes_back_through_the_rotor_where_encoders_are_at_the_joints(
+    robot_files,
+):
+    samples = diagnosed.evidence(robot_files["servos"], diagnosed.stamped_badly(0)).samples
+    (log,) = samples.filtered_logs
+    subject = log.signals.subject
+    motor, joint = subject.motors.index("knee"), subject.joints.index("knee")
+    values = np.array([0.002, 0.0, 0.0, 0.0, 0.0])
+    share, square = taken(samples, EFFECTS[BELT], "knee", values, (motor, joint), (LOAD,))
+    row = next(
+        i for i, r in enumerate(log.rows) if (r.residual_name, r.column) == ("motion", joint)
     )
-    assert isinstance(at_joints, Shrinking)
-    assert at_joints.log(0.5) < 0
-    assert at_rotors is None
+    inertia = rotor(subject, motor)
+    for band in log.bands[row][-2:]:  # x = J compliance omega^2 of white noise
+        (group,) = set(samples.group[samples.where[0][row]][log.labels(row)[0] == band.index])
+        turned = (2 * np.pi) ** 2 * (band.high**3 - band.low**3) / (3 * (band.high - band.low))
+        assert share[0, group] == pytest.approx(inertia * values[0] * turned, rel=0.3)
+        assert square[0, group] >= share[0, group] ** 2
 
 
 def test_a_clock_that_jitters_is_no_belt(robot_files):
@@ -58,11 +82,12 @@ def test_belts_pay_for_the_noise_of_torques_that_stretches_them(robot_files, beh
     values = np.array([0.01, 0.05, 1.0, behind, stiffening])
     one = factor(samples, BELT, "knee", USUAL, values)
     assert isinstance(one, Shrinking)
-    size = values[0] / USUAL[0]
-    assert one.log(size) < 0
+    assert one.log(values[0] / USUAL[0]) < 0
     # the same from other noise, and from what is left of it
     (log,) = samples.filtered_logs
     signals, motor = log.signals, log.signals.subject.motors.index("knee")
+    joint = samples.rows[one.row].column
+    shared, square = taken(samples, EFFECTS[BELT], "knee", values, (motor, joint), (TORQUE,))
     noise = 0.02 * np.random.default_rng(5).normal(size=len(signals.time))
     believed = signals.believed.copy()
     believed[:, motor] += noise
@@ -70,13 +95,11 @@ def test_belts_pay_for_the_noise_of_torques_that_stretches_them(robot_files, beh
         EFFECTS[BELT].trace(each, "knee", values[None])["motion"][0]
         for each in (signals, replace(signals, believed=believed))
     )
-    joint = samples.rows[one.row].column
     added = noise * signals.subject.joint_from_motor[joint, motor]
     place = [row.column for row in log.rows if row.residual_name == "motion"].index(joint)
     before, after = log.sample(place, np.stack([added, added - (moved - calm)[:, joint]]))
     own = samples.group[samples.row == one.row]
-    kept = 1 - 2 * one.slope * size + one.square * size**2
     for band in np.unique(own):
-        mine = own == band
-        left = np.sum(after[mine] ** 2) / np.sum(before[mine] ** 2)
-        assert kept[mine] == pytest.approx(left, abs=0.2)
+        left = np.sum(after[own == band] ** 2) / np.sum(before[own == band] ** 2)
+        kept = 1 - 2 * shared[0, band] + square[0, band]
+        assert kept == pytest.approx(left, abs=0.2)

@@ -40,6 +40,7 @@ class Backlash(MotorEffect):
     """
 
     identifier: ClassVar[str] = "backlash"
+    stretched: ClassVar[bool] = True
     rough: ClassVar[Mapping[str, float]] = {"angle": 0.15}
     """How rotors move on belts that give was 10 to 25 % off in development."""
     summary: ClassVar[str] = "a motor turns freely through a small angle before its joint follows"

@@ -43,6 +43,7 @@ class TransmissionElasticity(MotorEffect):
     """
 
     identifier: ClassVar[str] = "transmission_elasticity"
+    stretched: ClassVar[bool] = True
     rough: ClassVar[Mapping[str, float]] = {"compliance": 0.15}
     """How rotors move on belts that give was 10 to 25 % off in development."""
     summary: ClassVar[str] = "a belt, cable or gear gives under load, so motor and joint move apart"
@@ -87,14 +88,6 @@ class TransmissionElasticity(MotorEffect):
     look_alikes: ClassVar[Mapping[str, str]] = {
         "command_delay": "a chirp past 8 Hz",
     }
-
-    @override
-    def noise_inertia(self, location: str, subject: Subject, values: np.ndarray) -> float | None:
-        """The rotor's, where encoders are at the joints."""
-        side = float(values[SIDE])
-        if side >= belt.CHOSEN:
-            return None
-        return machine.rotor(subject, subject.motors.index(location)) * (1 - side)
 
     @override
     def holds_torque(self, values: np.ndarray) -> bool:

@@ -75,8 +75,11 @@ def relative_load(signals: Signals, joint: int) -> np.ndarray:
         joint: index of the joint.
 
     Returns:
-        `(t,)` [-]; unknown ticks zero.
+        `(t,)` [-]; unknown ticks zero, and all of a joint without a drive, which transmits no load:
+        what the model needs there is the residual itself.
     """
+    if signals.subject.passive[joint]:
+        return np.zeros(len(signals.time))
     load = np.nan_to_num(signals.rigid[:, joint])
     return np.asarray(load / (float(np.sqrt(np.mean(load**2))) or 1.0))
 

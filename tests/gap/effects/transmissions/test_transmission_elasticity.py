@@ -98,18 +98,3 @@ def test_a_search_does_not_leave_the_side_where_joints_rub_and_a_belt_before_the
     subject = pendulum(Wrong()).subject
     found = ELASTICITY.alteration("swing", np.array([0.01, 0.05, 1.0, 1.0, 20.0]), subject)
     assert (found.compliance, found.stiffening, found.side) == (0.01, 20.0, 1.0)
-
-
-def test_noise_of_accelerations_comes_back_through_the_rotor_where_encoders_are_at_the_joints(
-    pendulum,
-):
-    from hyperleg_design.gap.model.machine import rotor
-
-    subject = pendulum(Wrong()).subject
-
-    def inertia(side):
-        return ELASTICITY.noise_inertia("swing", subject, np.array([0.01, 0.05, side, 0.0, 0.0]))
-
-    assert inertia(0.0) == rotor(subject, 0) > 0
-    assert inertia(0.25) == 0.75 * inertia(0.0)
-    assert inertia(1.0) is None

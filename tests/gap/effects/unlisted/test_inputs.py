@@ -1,8 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pendulum import Wrong
 
-from hyperleg_design.gap.effects.unlisted.inputs import INPUTS, SHAPES, functions
+from hyperleg_design.gap.effects.unlisted.inputs import INPUTS, SHAPES, functions, relative_load
 
 
 @pytest.mark.parametrize("name", INPUTS)
@@ -29,3 +31,12 @@ def test_no_function_of_speed_is_friction(pendulum):
     for one in functions(signals, 0, "speed"):
         left = one - listed @ np.linalg.lstsq(listed, one, rcond=None)[0]
         assert np.std(left) > 0.05 * np.std(one)
+
+
+def test_a_joint_without_a_drive_has_no_load(leg):
+    signals = leg(duration=1.5)
+    subject = replace(signals.subject, passive=np.arange(len(signals.subject.joints)) == 1)
+    passive = replace(signals, subject=subject)
+    assert not relative_load(passive, 1).any()
+    assert relative_load(passive, 0).any()
+    assert not functions(passive, 1, "strength").any()
