@@ -53,8 +53,8 @@ class ActuatorBandwidth(MotorEffect):
 
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Half as late as all drives together."""
-        return dict.fromkeys(self.locations(subject), np.array([0.5 * lateness(step)]))
+        """As late as all drives together."""
+        return dict.fromkeys(self.locations(subject), np.array([lateness(step)]))
 
     @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
