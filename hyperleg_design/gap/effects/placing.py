@@ -244,6 +244,7 @@ def limited(
     *,
     peak: float | np.ndarray = np.inf,
     voltage: float | np.ndarray = 1.0,
+    line: tuple[float | np.ndarray, float | np.ndarray] | None = None,
 ) -> np.ndarray:
     """Torque of one motor within its limits, as `conditioning.limited_torque` [Nm].
 
@@ -254,12 +255,14 @@ def limited(
         peak: further limit [Nm], broadcasts against `torque`.
         voltage: over the nominal one; scales stall torque and no-load speed, broadcasts against
             `torque`.
+        line: stall torque [Nm] and no-load speed [rad/s], broadcast likewise; by default the
+            motor's own.
     """
     subject = signals.subject
     peak = np.minimum(subject.torque_limit[motor], peak)
-    stall, free = float(subject.stall_torque[motor]), float(subject.no_load_speed[motor])
-    line = np.isfinite(stall) and np.isfinite(free)
-    droop = stall / free * signals.motor_speed[:, motor] if line else np.zeros(1)
+    stall, free = line or (subject.stall_torque[motor], subject.no_load_speed[motor])
+    lined = bool(np.isfinite(stall).all() and np.isfinite(free).all())
+    droop = stall / free * signals.motor_speed[:, motor] if lined else np.zeros(1)
     available = stall * np.maximum(voltage, 0.0) * signals.supplied[:, motor]
     largest = max(float(np.nanmax(torque, initial=0.0)), -float(np.nanmin(torque, initial=0.0)))
     if largest <= min(
@@ -270,7 +273,7 @@ def limited(
             torque, np.broadcast_shapes(np.shape(torque), np.shape(peak), np.shape(voltage))
         )
     torque = np.clip(torque, -peak, peak)
-    if not line:
+    if not lined:
         return torque
     return np.asarray(
         np.clip(np.maximum(np.minimum(torque, available - droop), -available - droop), -peak, peak)

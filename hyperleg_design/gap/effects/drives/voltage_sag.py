@@ -23,7 +23,6 @@ from hyperleg_design.gap.effects.placing import (
     limited,
     machine,
     motor_strength,
-    motor_velocity,
 )
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
@@ -34,6 +33,8 @@ from hyperleg_design.simulation.alteration import Alteration
 FAR, FALLS_SHORT, FEWEST = 6.0, 0.02, 20
 """A motor falls short where it gives less than it is told, by so many times the median of its
 error, and by this share of the torque that it is made for; ticks that a line needs."""
+NEAREST = 1e-12
+"""`limits` from which a line is drawn [-]; below, it is out of reach."""
 REFERENCE_SPEED = 0.5
 """Reference power: the torque that the joints are made for at this speed [rad/s]; assumed."""
 SAGGING = 0.03
@@ -145,16 +146,12 @@ class VoltageSag(Effect):
                 commanded(signals, motor),
                 commanded(signals, motor) * (1 - torque * lost),
             )
-            if np.isfinite(subject.stall_torque[motor]) and np.isfinite(
-                subject.no_load_speed[motor]
-            ):
-                given = limited(signals, motor, wanted, voltage=np.maximum(1 - limits * lost, 0.0))
+            if np.isfinite([subject.stall_torque[motor], subject.no_load_speed[motor]]).all():
+                given = limited(signals, motor, wanted, voltage=1 - limits * lost)
             else:
-                given = limited(signals, motor, wanted)
-                near = np.maximum(limits, 1e-12) / motor_strength(subject, motor)
-                drop = motor_velocity(signals, motor) / (speed * subject.motor_over_joint(motor))
-                full = 1 - lost
-                given = np.maximum(np.minimum(given, (full - drop) / near), -(full + drop) / near)
+                stall = motor_strength(subject, motor) / np.maximum(limits, NEAREST)
+                line = stall, speed * subject.motor_over_joint(motor)
+                given = limited(signals, motor, wanted, voltage=1 - lost, line=line)
             changes[motor] = given - limited(signals, motor, asked)
         return before_measurement(signals, changes)
 
@@ -216,7 +213,7 @@ def _lines(signals: Signals) -> list[list[float]]:
         if len(far) < FEWEST:
             continue
         lines = np.nan_to_num(
-            np.stack([1 - missing(signals), -motor_velocity(signals, motor) * way], -1)[far]
+            np.stack([1 - missing(signals), -signals.motor_speed[:, motor] * way], -1)[far]
         )
         (level, slope), *_ = np.linalg.lstsq(
             lines, np.abs(torque[far]) / motor_strength(subject, motor)
@@ -243,10 +240,8 @@ def missing(signals: Signals) -> np.ndarray:
             - signals.voltage
             / (nominal if np.isfinite(nominal) else float(np.nanpercentile(signals.voltage, FULL)))
         )
-    speed = np.stack([motor_velocity(signals, motor) for motor in range(len(subject.motors))], -1)
-    return modelled(
-        np.nan_to_num(signals.believed), speed, machine(subject), reference_power(subject)
-    )
+    torque, speed = np.nan_to_num(signals.believed), signals.motor_speed
+    return modelled(torque, speed, machine(subject), reference_power(subject))
 
 
 def reference_power(subject: Subject) -> float:

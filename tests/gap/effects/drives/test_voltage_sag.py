@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pendulum import Wrong, misfit, voltage
@@ -29,6 +31,17 @@ def test_an_unknown_line_falls_with_voltage_and_speed(pendulum, simulated):
     assert misfit(signals, found, "drive") < 0.1
     still = SAG.trace(signals, "battery", np.array([[4.0, 0.0, 60.0]]))
     assert misfit(signals, still, "drive") > 2 * misfit(signals, found, "drive")
+
+
+def test_an_unknown_line_follows_the_speed_that_known_ones_do(simulated):
+    signals = simulated("voltage_sag", [4.0, 0.0, 4.0], battery=voltage)
+    faster = replace(signals, motor_speed=2 * signals.motor_speed)
+    of_line, of_speed = (
+        SAG.trace(log, "battery", np.array([[4.0, 0.0, speed]]))
+        for log, speed in ((signals, 4.0), (faster, 8.0))
+    )
+    assert np.any(of_line["drive"])
+    np.testing.assert_allclose(of_speed["drive"], of_line["drive"], atol=1e-12)
 
 
 def test_the_battery_is_also_the_robot(pendulum):
