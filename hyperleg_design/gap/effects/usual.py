@@ -8,7 +8,7 @@ from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.model.subject import Subject
 
 LATE, LATE_TICKS = 0.001, 0.15
-"""[s] and ticks of the log, of all drives and of each."""
+"""[s] and ticks of the log, of all drives; one of them lags by half as much beside them."""
 COULOMB_LEAST = 0.0008
 """Of the torque that the joint is made for: friction where the model has none."""
 

@@ -53,7 +53,12 @@ class ActuatorBandwidth(MotorEffect):
 
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """As late as all drives together."""
+        """Half as late as all drives together."""
+        return dict.fromkeys(self.locations(subject), np.array([0.5 * lateness(step)]))
+
+    @override
+    def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """Of one drive as of all, as a delay."""
         return dict.fromkeys(self.locations(subject), np.array([lateness(step)]))
 
     @override
