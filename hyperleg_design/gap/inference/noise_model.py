@@ -281,13 +281,13 @@ def of_load(filtered_log: FilteredLog, row: int) -> np.ndarray:
     Returns:
         Variance of each sample of the row that such noise makes `(samples,)` [Nm^2].
     """
-    signals, one, mask = filtered_log.signals, filtered_log.rows[row], filtered_log.mask[row]
+    signals, channel, mask = filtered_log.signals, filtered_log.rows[row], filtered_log.mask[row]
     residual, needed = (
-        np.where(mask, np.nan_to_num(values[:, one.column]), 0.0)
-        for values in (signals.residual[one.residual_name], signals.rigid)
+        np.where(mask, np.nan_to_num(values[:, channel.column]), 0.0)
+        for values in (signals.residual[channel.residual_name], signals.rigid)
     )
     own, its, both = (
-        _white(values, mask, one.cutoff, signals.step)
+        _white(values, mask, channel.cutoff, signals.step)
         for values in (residual, needed, residual + needed)
     )
     if own <= 0 or not filtered_log.bands[row]:

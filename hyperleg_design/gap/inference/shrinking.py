@@ -122,7 +122,7 @@ def _parts(samples: Samples, joint: int, kinds: Sequence[str]) -> np.ndarray:
     """Shares of each sample's noise in a joint's row that are of each kind `(kinds, S)`; all noise
     that is not of accelerations may be of torques.
     """
-    part = np.zeros((len(kinds), len(samples.row)))
+    parts = np.zeros((len(kinds), len(samples.row)))
     for log, places in zip(samples.filtered_logs, samples.where, strict=True):
         for place, row in enumerate(log.rows):
             if (row.residual_name, row.column) != ("motion", joint):
@@ -131,9 +131,9 @@ def _parts(samples: Samples, joint: int, kinds: Sequence[str]) -> np.ndarray:
             of_accelerations = np.minimum(noise_model.of_acceleration(log, place)[0] / square, 1.0)
             loads = noise_model.of_load(log, place) / square if LOAD in kinds else np.inf
             others = np.minimum(loads, 1 - of_accelerations)
-            for one, kind in zip(part, kinds, strict=True):
-                one[at] = of_accelerations if kind == ACCELERATION else others
-    return part
+            for part, kind in zip(parts, kinds, strict=True):
+                part[at] = of_accelerations if kind == ACCELERATION else others
+    return parts
 
 
 def taken(
