@@ -40,7 +40,8 @@ def conditioned(tmp_path_factory):
     """A policy for many designs after 64 steps, and its designs."""
     folder = tmp_path_factory.mktemp("trained")
     base, designs = load_preset("designs"), spread(folder, 0.4)
-    stages = tuple(dataclasses.replace(s, steps=64) for s in base.stages("walk_upright"))
+    stages = base.stages("walk_upright")
+    stages = tuple(dataclasses.replace(s, steps=64 // len(stages)) for s in stages)
     network = dataclasses.replace(base.network, hidden=(16, 8))
     preset = dataclasses.replace(
         base, simulations=8, rollout=4, network=network, tasks={"walk_upright": stages}
