@@ -10,16 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.simulation.settings import in_use
 from hyperleg_design.simulation.tasks import _SECTIONS
 from hyperleg_design.simulation.waypoint_commands import WaypointCommands
 
 if TYPE_CHECKING:
     from hyperleg_design.learning.preset import Preset, Ramp, Stage
     from hyperleg_design.simulation.tasks import Task
-
-
-LATER = ("height_share", "slower", "uneven_floor")
-"""Settings of tasks that came after trainings were shipped; 0 where they are not used."""
 
 
 def task_mapping(task: Task) -> dict[str, Any]:
@@ -54,7 +51,7 @@ def _section(section: Any) -> dict[str, Any]:
     """Leaves of a section without later settings that are not used, so that trainings from before
     there were such settings go on.
     """
-    return {k: v for k, v in parameters.leaves(section).items() if k not in LATER or v}
+    return in_use(parameters.leaves(section))
 
 
 def preset_mapping(preset: Preset, task: str) -> dict[str, Any]:

@@ -5,6 +5,7 @@ the paper is named.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -96,6 +97,22 @@ class Start(Checked):
     stride_share: Any = number("", 0, 1, default=0.0)
     """Fraction of episodes that start in mid-stride, at a phase of human walking and about
     1.33 m/s (`human_gait`); the others start standing [-]."""
+
+
+LATER = ("height_share", "slower", "uneven_floor")
+"""Settings that came after trainings and trials were shipped; 0 where they are not used."""
+
+
+def in_use(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Leave out settings of `LATER` that are not used, so that older files describe the same.
+
+    Args:
+        settings: values of one section by name.
+
+    Returns:
+        The others.
+    """
+    return {name: value for name, value in settings.items() if value or name not in LATER}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -13,21 +13,17 @@ by band.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.placing import motor_strength
 from hyperleg_design.gap.inference import noise_model
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from hyperleg_design.gap.effects.effect import Effect
-    from hyperleg_design.gap.inference.samples import Samples
-    from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.inference.samples import Samples
+from hyperleg_design.gap.model.memoized import memoized
+from hyperleg_design.gap.signals.signals import Signals
 
 LEAST = 0.05
 """Share of noise that no cause shrinks further, as a standard deviation [-]."""
@@ -41,9 +37,6 @@ SMALLEST = 0.05
 (assumed)."""
 ACCELERATION, LOAD, TORQUE = "acceleration", "load", "torque"
 """Kinds of noise: of accelerations, of other parts of the needed torque, and of the motor's."""
-
-_Kind = tuple[str, int, int]
-_SHAKEN: WeakKeyDictionary[Signals, dict[_Kind, tuple[Signals, np.ndarray]]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,12 +175,9 @@ def taken(
     return shared / whole, squares / whole
 
 
+@memoized
 def _shaken(signals: Signals, kind: str, motor: int, joint: int) -> tuple[Signals, np.ndarray]:
     """A log with noise of one kind, and what it leaves in a joint's residual `(t,)` [Nm]."""
-    known = _SHAKEN.setdefault(signals, {})
-    key = kind, motor, joint
-    if key in known:
-        return known[key]
     subject = signals.subject
     rng = np.random.default_rng([SEED, motor])
     white = SHAKEN * motor_strength(subject, motor) * rng.normal(size=len(signals.time))
@@ -202,14 +192,12 @@ def _shaken(signals: Signals, kind: str, motor: int, joint: int) -> tuple[Signal
         )
         acceleration = signals.acceleration + turned
         shaken = replace(signals, acceleration=acceleration, rigid=signals.rigid + needed)
-        known[key] = shaken, -needed[:, joint]
-    elif kind == LOAD:
+        return shaken, -needed[:, joint]
+    if kind == LOAD:
         needed = signals.rigid.copy()
         needed[:, joint] += white
-        known[key] = replace(signals, rigid=needed), -white
-    else:
-        believed = signals.believed.copy()
-        believed[:, motor] += white
-        shaken = replace(signals, believed=believed)
-        known[key] = shaken, white * subject.joint_from_motor[joint, motor]
-    return known[key]
+        return replace(signals, rigid=needed), -white
+    believed = signals.believed.copy()
+    believed[:, motor] += white
+    shaken = replace(signals, believed=believed)
+    return shaken, white * subject.joint_from_motor[joint, motor]

@@ -161,16 +161,20 @@ def compared_groups(name: str | Path) -> dict[str, str]:
     return {run.group: run.task for run in load_campaign(name).runs if run.compared}
 
 
+def shipped_campaigns() -> list[str]:
+    """List the shipped campaigns.
+
+    Returns:
+        Their names, sorted.
+    """
+    return [name for name in resources.names("sim") if name.split("_")[0] == "campaign"]
+
+
 def shipped_starts() -> frozenset[str]:
     """Collect the groups whose policies others only start from, in every shipped campaign.
 
     Returns:
         Names of the groups.
     """
-    runs = [
-        run
-        for name in resources.names("sim")
-        if name.split("_")[0] == "campaign"
-        for run in load_campaign(name).runs
-    ]
+    runs = [run for name in shipped_campaigns() for run in load_campaign(name).runs]
     return frozenset(r.group for r in runs) - {r.group for r in runs if r.compared}

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hyperleg_design import resources
 from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, load_protocol
@@ -27,6 +26,7 @@ from hyperleg_design.evaluation.versus_paper import VARIANTS
 from hyperleg_design.learning.campaigns.campaign import (
     compared_groups,
     load_campaign,
+    shipped_campaigns,
     shipped_starts,
 )
 
@@ -337,7 +337,8 @@ def _compared(folder: str | Path | None, *, late: bool = True) -> list[Shipped]:
 
 def _rewarded(folder: str | Path | None) -> list[Shipped]:
     """Last policies of the trainings under several rewards."""
-    return [p for p in shipped_policies(folder, late=False) if p.group in compared_groups(REWARDS)]
+    groups = compared_groups(REWARDS)
+    return [p for p in shipped_policies(folder, late=False) if p.group in groups]
 
 
 def other_groups() -> frozenset[str]:
@@ -347,9 +348,8 @@ def other_groups() -> frozenset[str]:
         Their names.
     """
     groups: dict[bool, set[str]] = {True: set(), False: set()}
-    for name in resources.names("sim"):
-        if name.split("_")[0] == "campaign":
-            groups[name in CAMPAIGNS] |= set(compared_groups(name))
+    for name in shipped_campaigns():
+        groups[name in CAMPAIGNS] |= set(compared_groups(name))
     return frozenset(groups[False] - groups[True])
 
 

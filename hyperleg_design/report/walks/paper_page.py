@@ -21,7 +21,7 @@ from hyperleg_design.report.walks.policy_parts import parts
 from hyperleg_design.report.walks.rewards_part import reward_rows
 from hyperleg_design.writing import check_output_folder, output_folder, write_json, write_text
 
-TABLES, PLANNED, UNDER, RESULTS = "tables.json", "planned.json", "rewards.json", "evaluation"
+TABLES, PLANNED, BY_REWARD, RESULTS = "tables.json", "planned.json", "rewards.json", "evaluation"
 """Rows beside the paper, outcomes of the analysis plan, both arms under several rewards, and the
 trials' tables, beside the page."""
 NO_POLICY = (
@@ -115,7 +115,7 @@ def policy_parts(evaluated: Evaluated, folder: Path, prefix: str = "") -> list[A
         write_results(folder / RESULTS, evaluated.evaluations)
     if evaluated.rewards is not None:
         rows = reward_rows(evaluated.rewards)
-        write_json(folder / UNDER, {g: [row_numbers(r) for r in rs] for g, rs in rows.items()})
+        write_json(folder / BY_REWARD, {g: [row_numbers(r) for r in rs] for g, rs in rows.items()})
     return parts(evaluated, Drawer(folder, prefix))
 
 

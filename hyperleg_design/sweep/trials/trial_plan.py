@@ -18,12 +18,11 @@ from hyperleg_design.evaluation.protocol import (
     protocol_mapping,
 )
 from hyperleg_design.evaluation.shipped import Shipped
+from hyperleg_design.simulation.settings import in_use
 from hyperleg_design.sweep.spaces.definition import Sweep
 
 SEEDS = 3
 """Trainings that are evaluated on each design."""
-LATER = ("uneven_floor",)
-"""Settings of protocols that came after trials were committed; 0 where they are not used."""
 
 
 @dataclass(frozen=True)
@@ -40,9 +39,7 @@ class Plan:
 def _settings(protocol: Protocol) -> dict[str, Any]:
     """A protocol written out, without what came later and is not used."""
     return {
-        name: {k: v for k, v in value.items() if v or k not in LATER}
-        if isinstance(value, dict)
-        else value
+        name: in_use(value) if isinstance(value, dict) else value
         for name, value in protocol_mapping(protocol).items()
     }
 
