@@ -91,8 +91,8 @@ class Ramp:
 
     target: tuple[str, str, str]
     """`rewards`, term, `weight` or a parameter; `commands`, setting, empty; `clock`, `shown`,
-    empty: gain of the gait clock in the observation; or `policy`, `deviation`, empty: the largest
-    standard deviation of the actions."""
+    empty: gain of the gait clock in the observation; `policy`, `deviation`, empty: the largest
+    standard deviation of the actions; or `algorithm`, `kl_target`, empty."""
     low: float
     """Value at its beginning."""
     high: float

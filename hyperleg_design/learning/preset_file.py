@@ -216,20 +216,20 @@ def _ramp(data: Any, where: str, path: str) -> Ramp:
     if kind == "rewards" and name:
         parameter = parameter or "weight"
         _check_term(name, [parameter], where, f"{path}.set")
-    elif str(data["set"]) not in ("policy.deviation", "clock.shown") and (
+    elif str(data["set"]) not in ("policy.deviation", "algorithm.kl_target", "clock.shown") and (
         kind != "commands" or not name or parameter
     ):
         raise InputError(
             where,
             f"{path}.set",
             data["set"],
-            "expects rewards.TERM, rewards.TERM.PARAMETER, commands.SETTING, clock.shown or "
-            "policy.deviation",
+            "expects rewards.TERM, rewards.TERM.PARAMETER, commands.SETTING, clock.shown, "
+            "policy.deviation or algorithm.kl_target",
         )
     begins = data.get("begins", "stage")
     if begins not in BEGINS:
         raise InputError(where, f"{path}.begins", begins, f"expects one of {', '.join(BEGINS)}")
-    least = 1e-3 if kind == "policy" else FINITE[0]
+    least = {"policy": 1e-3, "algorithm": 1e-5}.get(kind, FINITE[0])
     low, high = (
         checked_number(data[key], where, f"{path}.{key}", least, FINITE[1])
         for key in ("from", "to")

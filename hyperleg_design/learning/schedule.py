@@ -82,7 +82,7 @@ class Schedule:
             if stage.commands:
                 environment.set_commands(**stage.commands)
             for ramp in stage.ramps:
-                if ramp.target[0] == "policy":
+                if ramp.target[0] in ("policy", "algorithm"):
                     continue
                 set_value(
                     environment,
@@ -95,14 +95,12 @@ class Schedule:
         """Largest standard deviation of the actions that the ramps allow at present; infinite
         without.
         """
-        index, done = self.place
-        deviation = float("inf")
-        for i, stage in enumerate(self.stages[: index + 1]):
-            for ramp in stage.ramps:
-                if ramp.target[0] == "policy":
-                    length = done if i == index else self.preset.iterations(stage)
-                    deviation = _between(ramp, self._progress(ramp, i, length))
-        return deviation
+        return self._latest("policy", float("inf"))
+
+    @property
+    def kl_target(self) -> float:
+        """Divergence of one update that the learning rate aims at, at present [nat]."""
+        return self._latest("algorithm", float(self.preset.algorithm.kl_target))
 
     def advance(self, mean_episode: float, share: float) -> None:
         """Note that one iteration is done, and let the assist decay where the robots do well
@@ -155,6 +153,16 @@ class Schedule:
             self.gain = 0.0
         if self.gain == 0.0 and self.gone[index] is None:
             self.gone[index] = done
+
+    def _latest(self, kind: str, value: float) -> float:
+        """Value that the latest ramp of a kind gives, of the stages begun; `value` without one."""
+        index, done = self.place
+        for i, stage in enumerate(self.stages[: index + 1]):
+            length = done if i == index else self.preset.iterations(stage)
+            for ramp in stage.ramps:
+                if ramp.target[0] == kind:
+                    value = _between(ramp, self._progress(ramp, i, length))
+        return value
 
     def _progress(self, ramp: Ramp, index: int, done: int) -> float:
         if ramp.begins == "assist_gone":

@@ -255,6 +255,7 @@ class Training:
             with torch.no_grad():
                 deviations = algorithm.get_policy().distribution.log_std_param
                 deviations.clamp_(max=float(np.log(self.schedule.most_deviation)))
+        algorithm.desired_kl = self.schedule.kl_target
         stage, gain = self.schedule.place[0], self.schedule.gain
         with torch.inference_mode():
             for _ in range(int(self.preset.rollout)):

@@ -94,6 +94,19 @@ def test_a_state_put_back_sets_the_same(tiny: Preset, environment: Environment) 
     assert vars(other.chunks[0].commander.settings) == vars(expected[1])
 
 
+def test_a_ramp_lowers_the_divergence_that_the_learning_rate_aims_at() -> None:
+    data = tiny_mapping()
+    ramp = {"set": "algorithm.kl_target", "from": 0.03, "to": 0.01, "steps": 64}
+    data["tasks"]["walk"][1]["ramps"] = [ramp]
+    preset, targets = preset_from_mapping(data, "p.yaml"), []
+    schedule = Schedule(preset, "walk")
+    for _ in range(7):
+        targets.append(schedule.kl_target)
+        schedule.advance(0.0, 0.0)
+    usual = float(preset.algorithm.kl_target)
+    assert targets == pytest.approx([usual] * 3 + [0.03, 0.02, 0.01, 0.01])
+
+
 def test_exploration_is_bounded_by_a_ramp_that_leaves_the_environment_alone(
     environment: Environment,
 ) -> None:
