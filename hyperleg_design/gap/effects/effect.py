@@ -23,16 +23,10 @@ KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 RESIDUALS = ("motion", "drive", "control", "base", "ground")
 """Rows that a trace can fill; `gap/signals/signals.py` says what each compares."""
 
-LOGGED, NEEDED, STEERED, CALIBRATED = NUISANCE_TORQUES = (
-    "logged",
-    "needed",
-    "steered",
-    "calibrated",
-)
+LOGGED, NEEDED, STEERED = NUISANCE_TORQUES = ("logged", "needed", "steered")
 """Torques that a trace of a nuisance parameter rests on: those of the log; those that the motion
 needs; the log's with targets by which controllers ask for what the motion needs, where nobody
-measured torques; those that the motion needs where reference logs calibrate friction that the model
-does not have."""
+measured torques."""
 
 PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "imu": "IMU"}
 """Words of identifiers that have a spelling of their own."""

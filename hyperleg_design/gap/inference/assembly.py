@@ -23,6 +23,7 @@ from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import Samples, gather
 from hyperleg_design.gap.signals import filtering, resting
+from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import FilteredLog
 from hyperleg_design.gap.signals.signals import Signals
 
@@ -47,7 +48,7 @@ class Evidence:
     usual: Mapping[tuple[str, str, int], float]
     """Deviation of the usual calibration error of an effect's parameter at a place."""
     moved: tuple[float, ...]
-    """Share of the numbers of each channel in which its load is no noise."""
+    """Share of the numbers of each channel in which the torque of its drives is no noise."""
 
     def scaled(self, cause: Cause) -> Cause:
         """A cause that pays for scaling torques, as far as they are no noise in the channels that
@@ -150,7 +151,7 @@ def evidence_of(
     """
     subject = tests[0].subject
     errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references))
-    sets = [_set(tests, errors, rules, bool(references), tested=True)]
+    sets = [_set(tests, errors, rules, tested=True)]
     if not len(sets[0].samples.value):
         raise InputError(
             tests[0].log.name,
@@ -159,7 +160,7 @@ def evidence_of(
             "has too few ticks of which torques and motion are known: log longer, or more signals",
         )
     if references:
-        sets.append(_set(references, errors, rules, True, tested=False))
+        sets.append(_set(references, errors, rules, tested=False))
     keys = [(row.residual_name, row.column) for row in sets[0].samples.rows]
     made = [_channel(key, sets, rules) for key in keys]
     return Evidence(
@@ -199,7 +200,6 @@ def _set(
     signals: Sequence[Signals],
     errors: Sequence[nuisance.NuisanceParameter],
     rules: InferenceRules,
-    calibrated: bool,
     tested: bool,
 ) -> _Set:
     filtered_logs = [filtering.filtered_log(one, resting.sticking(one)) for one in signals]
@@ -210,7 +210,7 @@ def _set(
     samples = gather(filtered_logs, floors, sessions, rules.noise.information)
     columns = np.zeros((len(errors), len(samples.value)))
     for filtered, places in zip(filtered_logs, samples.where, strict=True):
-        for row, found in nuisance_traces.columns(filtered, errors, calibrated).items():
+        for row, found in nuisance_traces.columns(filtered, errors).items():
             columns[:, places[row]] = found
     return _Set(filtered_logs, samples, floors, columns, tested)
 
@@ -218,7 +218,9 @@ def _set(
 def _channel(
     key: tuple[str, int], sets: Sequence[_Set], rules: InferenceRules
 ) -> tuple[Channel, float]:
-    """A channel, and the share of its numbers under test in which its load is no noise."""
+    """A channel, and the share of its numbers under test in which the torque of its drives is no
+    noise.
+    """
     parts = [(one, row) for one in sets if (row := one.row(key)) is not None]
     made = [one.shapes(key, rules.discrepancy.waves) for one, _ in parts]
     signals = sets[0].filtered_logs[0].signals
@@ -272,7 +274,8 @@ def _channel(
 
 def _feigned(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarray], float]:
     """Columns of the part of the load that is noise or vibration in each band, over all sets
-    `(columns, S)` each.
+    `(columns, S)` each, and the share of the numbers under test in which the drives' torque is no
+    noise.
 
     Such noise is in the residual and in every trace that holds the load or its derivatives. A cause
     must not gain by it: the load, and its second derivative, have a prior deviation of the share of
@@ -289,18 +292,25 @@ def _feigned(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarra
             torque = load(filtered.signals, *key)
             step = filtered.signals.step
             twice = np.gradient(np.gradient(np.nan_to_num(torque), step), step)
-            slow, fast = filtered.sample(place, np.stack([torque, twice]))
+            given = applied(
+                filtered.signals.subject.joint_from_motor[key[1] : key[1] + 1],
+                filtered.signals.believed,
+            )[:, 0]
+            slow, fast, driven = filtered.sample(place, np.stack([torque, twice, given]))
             _, rate = noise_model.of_acceleration(filtered, place)
             expected = one.samples.floor[places[place]] ** 2
             band = filtered.labels(place)[0]
             for b in np.unique(band).tolist():
                 mine = band == b
-                size = float(np.mean(slow[mine] ** 2))
-                share = min(float(np.mean(expected[mine])) / max(size, 1e-300), 1.0)
+                noise = float(np.mean(expected[mine]))
+                share, idle = (
+                    min(noise / max(float(np.mean(torques[mine] ** 2)), 1e-300), 1.0)
+                    for torques in (slow, driven)
+                )
                 at = np.arange(places[place].start, places[place].stop)[mine]
                 if one.tested:
                     number = float(one.samples.share[at].sum())
-                    whole, clean = whole + number, clean + (1 - share) * number
+                    whole, clean = whole + number, clean + (1 - idle) * number
                 columns[2 * b, at] = share * slow[mine]
                 columns[2 * b + 1, at] = share * fast[mine] / float(np.mean(rate[mine]))
     return found, clean / max(whole, 1e-300)

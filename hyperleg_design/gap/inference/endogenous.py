@@ -5,13 +5,15 @@ A closed loop gives whatever torque is needed, model errors e included. An effec
 of the believed torque for its own trace takes that share of e along, so that least squares would
 always rather scale torques down. The density of the believed torque has the missing term: with u =
 (1 + a phi) believed - needed, it is p(u) (1 + a phi), so the log-likelihood gains n mean log(1 + a
-phi). A joint whose torque is less than the floor gains nothing so: that would only tell that the
-floor is high.
+phi). Causes that scale the same torque add up in it: a smaller torque constant and another ratio
+could together take away all of a torque of which each takes a part. A joint whose torque is less
+than the floor gains nothing so: that would only tell that the floor is high.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,11 +35,11 @@ TICKS = 200
 
 @dataclass(frozen=True, eq=False)
 class Factor:
-    """How a cause scales believed torques: 1 + slope phi of one parameter."""
+    """How causes scale believed torques: 1 + slope phi, phi being one parameter of each."""
 
     parameter: int
     slope: np.ndarray
-    """At some ticks `(t,)`, over the usual size of the parameter."""
+    """At some ticks `(causes, t)`, over the usual sizes of the parameters."""
     number: float
     """Independent numbers in the rows that it scales."""
     shows: float = 1.0
@@ -45,15 +47,46 @@ class Factor:
     row: int = 0
     """Row of the joint that it scales most."""
 
-    def log(self, phi: float) -> float:
-        """N mean log of the factor."""
-        found = self.number * float(np.mean(np.log(np.maximum(1 + self.slope * phi, LEAST))))
+    def log(self, phi: np.ndarray) -> float:
+        """N mean log of the factor, of parameters `(causes,)`."""
+        found = self.number * float(np.mean(np.log(self._left(phi))))
         return self.shows * found if found > 0 else found
 
-    def slopes(self, phi: float) -> tuple[float, float]:
-        """First derivative of `log`, and its second with the sign turned."""
-        ratio = self.slope / np.maximum(1 + self.slope * phi, LEAST)
-        return self.number * float(ratio.mean()), self.number * float((ratio**2).mean())
+    def slopes(self, phi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """First derivatives of `log` `(causes,)`, and its second ones with the sign turned."""
+        ratio = self.slope / self._left(phi)
+        return self.number * ratio.mean(1), self.number * (ratio @ ratio.T) / ratio.shape[1]
+
+    def _left(self, phi: np.ndarray) -> np.ndarray:
+        return np.asarray(np.maximum(1 + phi @ self.slope, LEAST))
+
+
+def joined(
+    factors: Sequence[tuple[int, Factor | Shrinking]],
+) -> list[tuple[list[int], Factor | Shrinking]]:
+    """Factors of which those that scale the same torque are one.
+
+    Args:
+        factors: places of their parameters in a stack of causes, and they themselves.
+
+    Returns:
+        Places of the parameters of each, in the order that it takes them.
+    """
+    found: list[tuple[list[int], Factor | Shrinking]] = []
+    same: dict[int, list[tuple[int, Factor]]] = {}
+    for place, one in factors:
+        if isinstance(one, Factor):
+            same.setdefault(one.row, []).append((place, one))
+        else:
+            found.append(([place], one))
+    for own in same.values():
+        each = [one for _, one in own]
+        longest = max(each, key=lambda one: (one.slope.shape[1], one.number))
+        ticks = longest.slope.shape[1]  # logs under test come first in all of them
+        slope = [np.pad(one.slope, ((0, 0), (0, ticks - one.slope.shape[1]))) for one in each]
+        whole = replace(longest, slope=np.concatenate(slope), shows=min(one.shows for one in each))
+        found.append(([place for place, _ in own], whole))
+    return found
 
 
 def factor(
@@ -88,11 +121,9 @@ def factor(
     ):
         return None
     number = float(samples.share[samples.row == rows[0]].sum())
-    slopes = (
-        np.concatenate([_slope(s.signals, scaling, motor, joint) for s in samples.filtered_logs])
-        * usual[0]
-    )
-    return Factor(0, slopes, number, _shows(samples, rows[0], motor, joint), rows[0])
+    slopes = [_slope(s.signals, scaling, motor, joint) for s in samples.filtered_logs]
+    slope = usual[0] * np.concatenate(slopes)[None]
+    return Factor(0, slope, number, _shows(samples, rows[0], motor, joint), rows[0])
 
 
 def _shows(samples: Samples, row: int, motor: int, joint: int) -> float:

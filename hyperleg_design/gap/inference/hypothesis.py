@@ -13,7 +13,7 @@ from scipy.special import erfcx
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.endogenous import Factor
+from hyperleg_design.gap.inference.endogenous import Factor, joined
 from hyperleg_design.gap.inference.fit import Cause, within_bounds
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.shrinking import Shrinking
@@ -198,8 +198,9 @@ def solve(
     """
     # columns that are alike to rounding must not make the normal equations singular
     normal = products[1:, 1:] * (1 + ALIKE * np.eye(len(low)))
+    groups = joined(factors)
     found = [
-        _solve(normal, products[1:, 0], low, high, shape, rules, factors, first)
+        _solve(normal, products[1:, 0], low, high, shape, rules, groups, first)
         for first in (rules.cause.width, FREE)
     ]
     theta, precision, gain, occam = max(found, key=lambda one: one[2])
@@ -214,7 +215,7 @@ def _solve(
     high: np.ndarray,
     shape: np.ndarray,
     rules: InferenceRules,
-    factors: Sequence[tuple[int, Factor | Shrinking]],
+    groups: Sequence[tuple[list[int], Factor | Shrinking]],
     first: float,
 ) -> tuple[np.ndarray, np.ndarray, float, float]:
     """As `solve`, from a first prior deviation of the sizes: theta, its precision, gain and
@@ -225,18 +226,18 @@ def _solve(
     for turn in range(ROUNDS):
         if turn:
             wider = np.where(shape, 1.0, np.maximum(rules.cause.width, np.abs(theta)))
-            if not factors and np.array_equal(wider, deviation):
+            if not groups and np.array_equal(wider, deviation):
                 break
             deviation = wider
         precision, target = normal + np.diag(1 / deviation**2), right.copy()
-        for place, factor in factors:
-            slope, bend = factor.slopes(float(theta[place]))
-            precision[place, place] += bend
-            target[place] += slope + bend * theta[place]
+        for own, factor in groups:
+            slope, bend = factor.slopes(theta[own])
+            precision[np.ix_(own, own)] += bend
+            target[own] += slope + bend @ theta[own]
         theta = within_bounds(precision, target, low, high)
     occam = -0.5 * float(np.sum((theta / deviation) ** 2))
     occam -= float(np.sum(np.log(deviation))) + 0.5 * float(np.linalg.slogdet(precision)[1])
-    occam += sum(factor.log(float(theta[place])) for place, factor in factors)
+    occam += sum(factor.log(theta[own]) for own, factor in groups)
     occam += _beyond(theta, precision, target, low, high, shape)
     gain = float(right @ theta - 0.5 * theta @ normal @ theta)
     return theta, precision, gain + occam, occam

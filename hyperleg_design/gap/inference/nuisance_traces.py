@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.effects.effect import CALIBRATED, LOGGED, NEEDED, STEERED
+from hyperleg_design.gap.effects.effect import LOGGED, NEEDED, STEERED
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
     is_commanded,
@@ -48,27 +48,18 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-def traces(
-    signals: Signals, errors: Sequence[NuisanceParameter], calibrated: bool = False
-) -> list[dict[str, np.ndarray]]:
+def traces(signals: Signals, errors: Sequence[NuisanceParameter]) -> list[dict[str, np.ndarray]]:
     """Trace of each error at one spread from its null, by residual `(t, columns)`.
 
     Torque constants scale the torque that the motion needs, not the measured one, and so do gains
     where nobody measured any: else all of them together could scale the noise away, masses and
-    loads along with it, which no motion contradicts. So does friction under load where the model
-    has none and reference logs calibrate it: else its share of a torque that is mostly friction
-    explains all of it.
+    loads along with it, which no motion contradicts.
     """
     needed = np.asarray(signals.rigid @ signals.subject.motor_from_joint.T)
     modelled = replace(
         signals, believed=np.where(np.isfinite(needed), needed, signals.believed), target=None
     )
-    sources = {LOGGED: signals, NEEDED: modelled, STEERED: _steered(signals), CALIBRATED: modelled}
-    bare = {
-        joint
-        for joint, coulomb in zip(signals.subject.joints, signals.subject.coulomb, strict=True)
-        if calibrated and not coulomb
-    }
+    sources = {LOGGED: signals, NEEDED: modelled, STEERED: _steered(signals)}
     found = []
     for one in errors:
         if one.effect in (TURNOVER, SWUNG):
@@ -93,8 +84,6 @@ def traces(
         sign = 1.0 if values[one.parameter] + one.spread <= high else -1.0
         values[one.parameter] = np.clip(values[one.parameter] + sign * one.spread, low, high)
         source = sources[effect.nuisance_torque]
-        if effect.nuisance_torque == CALIBRATED and one.location not in bare:
-            source = signals
         moved = (values[one.parameter] - effect.nulls[one.parameter]) / one.spread
         found.append(
             {b: v[0] / moved for b, v in effect.trace(source, one.location, values[None]).items()}
@@ -243,14 +232,14 @@ def _swung(signals: Signals, joint: str, place: int) -> dict[str, np.ndarray]:
 
 
 def columns(
-    filtered_log: FilteredLog, errors: Sequence[NuisanceParameter], calibrated: bool = False
+    filtered_log: FilteredLog, errors: Sequence[NuisanceParameter]
 ) -> dict[int, np.ndarray]:
     """Samples of all errors at one spread each, by row `(errors, samples)`."""
     found = {
         row: np.zeros((len(errors), filtered_log.count(row)))
         for row in range(len(filtered_log.rows))
     }
-    for place, trace in enumerate(traces(filtered_log.signals, errors, calibrated)):
+    for place, trace in enumerate(traces(filtered_log.signals, errors)):
         for row, one in enumerate(filtered_log.rows):
             if one.residual_name in trace:
                 values = trace[one.residual_name][:, one.column]

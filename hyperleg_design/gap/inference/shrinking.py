@@ -56,21 +56,22 @@ class Shrinking:
     """Independent numbers that each stands for `(k,)`."""
     row: int
 
-    def log(self, phi: float) -> float:
-        """Log of the density by which noise that shrinks must not gain."""
+    def log(self, phi: np.ndarray) -> float:
+        """Log of the density by which noise that shrinks must not gain, of the parameter `(1,)`."""
         return 0.5 * float(self.number @ np.log(self._left(phi)))
 
-    def slopes(self, phi: float) -> tuple[float, float]:
-        """First derivative of `log`, and its second with the sign turned, where that is a
-        maximum.
+    def slopes(self, phi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """First derivative of `log` `(1,)`, and its second with the sign turned, where that is a
+        maximum `(1, 1)`.
         """
         left = self._left(phi)
         part = np.where(2 * self.slope * phi >= self.square * phi**2, self.part, 0.0)
         first = part * (self.square * phi - self.slope) / left
         second = 2 * first**2 - part * self.square / left
-        return float(self.number @ first), max(float(self.number @ second), 0.0)
+        bend = max(float(self.number @ second), 0.0)
+        return np.array([self.number @ first]), np.array([[bend]])
 
-    def _left(self, phi: float) -> np.ndarray:
+    def _left(self, phi: np.ndarray) -> np.ndarray:
         """Variance of each sample's noise that is left; noise that grows gains nothing by it."""
         shrunk = 1 - 2 * self.slope * phi + self.square * phi**2
         return np.clip(self.part * shrunk + 1 - self.part, LEAST**2, 1.0)

@@ -45,7 +45,7 @@ def test_a_cause_may_scale_torques_of_a_row_that_references_alone_have(robot_fil
     evidence = diagnosed.evidence(robot_files["coupled"], diagnosed.run("healthy", 0))
     rows = evidence.samples.rows
     lacking = replace(evidence, tests=replace(evidence.tests, rows=rows[:-1]))
-    factor = Factor(0, np.ones(1), 1.0, row=len(rows) - 1)
+    factor = Factor(0, np.ones((1, 1)), 1.0, row=len(rows) - 1)
     columns = np.ones((1, len(evidence.samples.value)))
     cause = replace(unbounded("torque_constant", "m_front", columns), factor=factor)
     assert lacking.scaled(cause).factor.number == evidence.scaled(cause).factor.number > 0

@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.effect import CALIBRATED
 from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
 from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.joints.friction import JointFriction
@@ -16,7 +15,6 @@ from hyperleg_design.gap.effects.kinds import JointTorque
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
-from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.simulation.alteration import Alteration
@@ -26,17 +24,16 @@ USUAL = 0.006
 
 
 class LoadDependentFriction(JointTorque):
-    """A joint resists sliding with a share of the torque that reaches it: its drive's, less what
-    turns the rotors.
+    """A joint resists sliding with a share of the torque that it transmits: what its motion needs
+    by the model, less what turns the rotors. The torque that its drive gives is more by the very
+    friction, so that friction of any kind would be a share of it.
 
-    Trace: coefficient |M tau - rotors' torque| times the way in which the joint slides,
-    `friction.sliding`.
+    Trace, to first order: coefficient |needed torque - rotors' torque| times the way in which the
+    joint slides, `friction.sliding`.
     """
 
     identifier: ClassVar[str] = "load_dependent_friction"
-    scales: ClassVar[str] = "joint"
     nuisance_rank: ClassVar[int] = 3
-    nuisance_torque: ClassVar[str] = CALIBRATED
     summary: ClassVar[str] = "a joint resists motion with a share of the torque that it transmits"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
@@ -77,20 +74,9 @@ class LoadDependentFriction(JointTorque):
 
     def _torque(self, signals: Signals, joint: int, coefficient: np.ndarray) -> np.ndarray:
         subject = signals.subject
-        load = (
-            applied(subject.joint_from_motor[joint : joint + 1], signals.believed)[:, 0]
-            - signals.acceleration @ subject.armature[joint]
-        )
+        load = signals.rigid[:, joint] - signals.acceleration @ subject.armature[joint]
         return coefficient * (np.abs(load) * sliding(signals)[:, joint])
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         return JointFriction(location, share=np.asarray(values, float)[..., 0])
-
-    @override
-    def torque_slope(self, signals: Signals, motor: int, joint: int) -> np.ndarray:
-        """Compute how the factor falls where the joint moves as it is driven, and rises
-        where not.
-        """
-        load = applied(signals.subject.joint_from_motor[joint : joint + 1], signals.believed)[:, 0]
-        return -(np.sign(np.nan_to_num(load)) * sliding(signals)[:, joint])

@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 from pendulum import Wrong, misfit
 
 from hyperleg_design.gap.effects import effect
@@ -7,8 +8,21 @@ LOAD = effect("load_dependent_friction")
 
 
 def test_trace_is_what_a_lossy_gear_leaves(pendulum):
+    """To first order: where a quarter of the drive's torque is lost, that is a third of the load's
+    as it drives, and a fifth as it brakes.
+    """
     signals = pendulum(Wrong(share=0.25))
-    assert misfit(signals, LOAD.trace(signals, "swing", np.array([[0.25]]))) < 0.2
+    assert misfit(signals, LOAD.trace(signals, "swing", np.array([[0.25]]))) < 0.35
+
+
+def test_friction_of_another_kind_is_no_share_of_the_load(pendulum):
+    """Where a drive's torque is mostly Coulomb friction, this is a share of it, but not of what
+    the motion needs.
+    """
+    rubbing, smooth = pendulum(Wrong(coulomb=0.5)), pendulum(Wrong())
+    traces = [LOAD.trace(one, "swing", np.array([[1.0]]))["motion"] for one in (rubbing, smooth)]
+    sizes = [np.sqrt(np.mean(trace**2)) for trace in traces]
+    assert sizes[0] == pytest.approx(sizes[1], rel=0.1)
 
 
 def test_simulation_with_it_leaves_its_trace(simulated, leg):
