@@ -153,4 +153,5 @@ def _shows(samples: Samples, row: int, motor: int, joint: int) -> float:
 
 def _slope(signals: Signals, effect: Effect, motor: int, joint: int) -> np.ndarray:
     """Change of the factor with the parameter, at some ticks."""
-    return effect.torque_slope(signals, motor, joint)[:: max(len(signals.time) // TICKS, 1)]
+    slope = np.broadcast_to(effect.torque_slope(signals, motor, joint), signals.time.shape)
+    return slope[:: max(len(signals.time) // TICKS, 1)]
