@@ -26,6 +26,7 @@ from hyperleg_design.gap.signals import filtering, resting
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import FilteredLog
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.sliding import dry_friction
 
 MOST_BANDS = 5
 """Bands of a channel, see `filtering.EDGES`."""
@@ -227,7 +228,7 @@ def _channel(
     size = np.mean([square for _, square, _ in made], 0)
     strength = float(np.mean([square for *_, square in made]))
     if key[0] == "motion":
-        strength += float(signals.subject.coulomb[key[1]]) ** 2
+        strength += float(dry_friction(signals)[key[1]]) ** 2
     scale = rules.discrepancy.share * np.sqrt(strength / np.maximum(size, 1e-300))
     scale[size <= 0] = 0.0
     own_noise, moved = None, 1.0

@@ -21,6 +21,7 @@ from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import Band, FilteredLog
 from hyperleg_design.gap.signals.ground import footings
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.sliding import dry_friction
 from hyperleg_design.gap.signals.stop_operator import stop
 
 NEAR = 0.5
@@ -132,7 +133,7 @@ def _loads(filtered_log: FilteredLog) -> tuple[dict[str, np.ndarray], dict[str, 
         still[residual_name] = np.zeros(residual.shape[1])
         if residual_name == "motion":
             found[residual_name] = applied(subject.joint_from_motor, signals.believed)
-            still[residual_name] = subject.coulomb
+            still[residual_name] = dry_friction(signals)
         elif residual_name == "base" and signals.contact is not None:
             total = np.linalg.norm(np.nan_to_num(signals.contact).sum(1), axis=-1)
             found[residual_name] = np.stack([total] * 3 + [0.2 * total] * 3, -1)

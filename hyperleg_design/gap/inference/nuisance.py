@@ -15,7 +15,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.placing import ROBOT, driven_motors, motor_strength
-from hyperleg_design.gap.effects.usual import lateness, least_friction
+from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.gap.model.subject import Subject
 
 FORCES_SCALED, OF_FORCES = "contact_scale", 0.01
@@ -178,10 +178,3 @@ def _give(subject: Subject, motor: int) -> float:
         / motor_strength(subject, motor)
     )
     return max(of_belt, of_gear)
-
-
-def turning(subject: Subject) -> np.ndarray:
-    """Friction whose turning over is a nuisance parameter `(n,)` [Nm]: the model's, or a usual
-    error where it has none.
-    """
-    return np.where(subject.coulomb > 0, subject.coulomb, least_friction(subject))

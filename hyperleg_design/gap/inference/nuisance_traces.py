@@ -17,6 +17,7 @@ from hyperleg_design.gap.effects.placing import (
 )
 from hyperleg_design.gap.effects.series import first_derivative
 from hyperleg_design.gap.effects.transmissions import belt
+from hyperleg_design.gap.effects.usual import least_friction
 from hyperleg_design.gap.inference.nuisance import (
     FILTERED,
     FORCES_LATE,
@@ -33,13 +34,12 @@ from hyperleg_design.gap.inference.nuisance import (
     UNLISTED,
     WAYS,
     NuisanceParameter,
-    turning,
 )
 from hyperleg_design.gap.model import friction, pads
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import FilteredLog
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.gap.signals.sliding import sliding
+from hyperleg_design.gap.signals.sliding import dry_friction, sliding
 from hyperleg_design.gap.signals.stop_operator import stop
 from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.drives.actuation import friction_damping
@@ -209,7 +209,7 @@ def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
     swing = None if signals.limit_cycle is None else signals.limit_cycle.speed[:, j]
     turned = friction.turned(signals.velocity[:, j], subject.friction_speed[j], swing)
     shape = stop(signals.position[:, j], WAYS[way - 1]) - at_once if way else at_once - turned
-    rows[:, j] = turning(subject)[j] * shape
+    rows[:, j] = np.maximum(dry_friction(signals), least_friction(subject))[j] * shape
     return {"motion": rows}
 
 

@@ -25,6 +25,8 @@ from hyperleg_design.gap.signals.stop_operator import stop
 
 NOISES = 8.0
 """Least z over the noise of the smoothed position."""
+MOST = 0.5
+"""Share of a residual, squared, from which it is mostly friction [-]."""
 WIDTH = 0.01
 """Velocity at which friction in a simulation has three quarters of its size [rad/s]; a sign,
 softened below what logs resolve."""
@@ -49,6 +51,27 @@ def sliding(signals: Signals) -> np.ndarray:
         )
     out.setflags(write=False)
     return out
+
+
+@memoized
+def dry_friction(signals: Signals) -> np.ndarray:
+    """Dry friction of each joint: the model's; where it has none, what the residual shows, if the
+    way of sliding explains most of it.
+
+    Args:
+        signals: conditioned log.
+
+    Returns:
+        [Nm], `(n,)`.
+    """
+    residual = signals.residual["motion"]
+    known = signals.valid[:, None] & np.isfinite(residual)
+    way, left = np.where(known, sliding(signals), 0.0), np.where(known, residual, 0.0)
+    along, ways, whole = (np.sum(x, 0) for x in (way * left, way**2, left**2))
+    shown = np.divide(along, ways, out=np.zeros_like(along), where=ways > 0)
+    shown[along**2 < MOST * ways * whole] = 0.0
+    coulomb = signals.subject.coulomb
+    return np.asarray(np.where(coulomb > 0, coulomb, np.maximum(shown, 0.0)))
 
 
 def presliding(signals: Signals) -> np.ndarray:

@@ -83,7 +83,11 @@ def healthy():
 
 
 def sizes(causes, effect):
-    return {one.location: next(iter(one.parameters.values())).value for one in causes if one.effect == effect}
+    return {
+        one.location: next(iter(one.parameters.values())).value
+        for one in causes
+        if one.effect == effect
+    }
 
 
 def test_friction_that_is_all_of_the_torque_is_friction(model, healthy):
