@@ -81,6 +81,7 @@ class Search:
             best = self._better(fewer[:-1], current)
             if best is not current:
                 current, fewer = best, []
+        current = self._beside_rivals(current)
         ranked = sorted(self.fitted.values(), key=lambda one: (-one.score, one.names))
         missing = tuple(
             traced
@@ -100,6 +101,16 @@ class Search:
             current = max(current, hypothesis, key=lambda any_: any_.score)
         return current
 
+    def _beside_rivals(self, current: Hypothesis) -> Hypothesis:
+        """Fit what else may act where each cause under test does, the others as they are, so that
+        rivals at its place are compared on the same footing.
+        """
+        best = current
+        for one, rest in zip(current.candidates, self._fewer(current), strict=True):
+            if not one.standing:
+                best = self._better(self.further(rest, at=one.location), best)
+        return best
+
     def _fewer(self, current: Hypothesis) -> list[Hypothesis]:
         """A hypothesis without each of its candidates."""
         smaller = []
@@ -113,12 +124,15 @@ class Search:
         """The hypothesis of some candidates, where it was fitted before."""
         return self.fitted.get(tuple(sorted(one.name for one in candidates)))
 
-    def further(self, current: Hypothesis, instead: Candidate | None = None) -> list[Hypothesis]:
+    def further(
+        self, current: Hypothesis, instead: Candidate | None = None, at: str = ""
+    ) -> list[Hypothesis]:
         """Fit the most promising causes beside those of a hypothesis.
 
         Args:
             current: the hypothesis.
             instead: a candidate whose place they are to take: only those that promise more.
+            at: location of those that are tried; all by default.
         """
         rules = self.rules.search
         promises: dict[Name, list[Promise]] = {}
@@ -134,7 +148,7 @@ class Search:
         least = rules.least
         if instead is not None:
             least = max(least, gains.get(instead.name, least))
-        promising = [name for name in names if gains[name] > least]
+        promising = [name for name in names if gains[name] > least and at in ("", name[1])]
         flexible = [name for name in promising if WEIGHED[name[0]].flexible]
         chosen = [name for name in promising if name not in flexible][: rules.candidates]
         chosen += flexible[: rules.flexible]
@@ -146,7 +160,7 @@ class Search:
             self._known((*current.candidates, one))
             or self.fits.fit((*current.candidates, one), current.scales)
             for gain, one in groups[: rules.groups]
-            if gain > least
+            if gain > least and not at
         ]
         return hypotheses
 
