@@ -104,20 +104,21 @@ def load_policy(name: str | Path) -> OnnxPolicy:
         InputError: missing, truncated or foreign file, or metadata that does not fit its graph.
     """
     path = find_policy(name)
+    where = short_name(path)
     try:
         content = path.read_bytes()
     except OSError as error:
-        raise InputError(str(path), "", None, f"cannot be read ({error.strerror})") from None
-    session = _session(content, path.name)
-    metadata = _metadata(session, path.name)
-    columns, joints = (_names(metadata[key], path.name, key) for key in ("columns", "joints"))
-    _check_graph(session, path.name, len(columns), len(joints))
+        raise InputError(where, "", None, f"cannot be read ({error.strerror})") from None
+    session = _session(content, where)
+    metadata = _metadata(session, where)
+    columns, joints = (_names(metadata[key], where, key) for key in ("columns", "joints"))
+    _check_graph(session, where, len(columns), len(joints))
     return OnnxPolicy(
         name=short_name(path.with_suffix("")),
         columns=columns,
         joints=joints,
-        design=robot_from_mapping(metadata["design"], f"{path.name}: design"),
-        task=task_from_mapping(metadata["task"], f"{path.name}: task"),
+        design=robot_from_mapping(metadata["design"], f"{where}: design"),
+        task=task_from_mapping(metadata["task"], f"{where}: task"),
         metadata=metadata,
         session=session,
     )
