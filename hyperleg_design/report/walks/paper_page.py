@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design import provenance
+from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.result_tables import write_results
+from hyperleg_design.evaluation.shipped import shipped_folder
 from hyperleg_design.report import page as pages
 from hyperleg_design.report.drawer import FIGURES, Drawer
 from hyperleg_design.report.page import Page, Section
@@ -24,10 +26,6 @@ from hyperleg_design.writing import check_output_folder, output_folder, write_js
 TABLES, PLANNED, BY_REWARD, RESULTS = "tables.json", "planned.json", "rewards.json", "evaluation"
 """Rows beside the paper, outcomes of the analysis plan, both arms under several rewards, and the
 trials' tables, beside the page."""
-NO_POLICY = (
-    "The folder of trainings holds no finished one, so walks and T-tests are not shown; "
-    "hyperleg campaign run trains them."
-)
 LEAD = (
     "Walking and the T-test with and without the active toe: trained policies, evaluated without "
     "assist, beside the paper's Tables III "
@@ -58,22 +56,24 @@ def run_paper(
         The page.
 
     Raises:
-        InputError: no such folder, or a policy that cannot be used.
+        InputError: no such folder, one without a policy to compare, or a policy that cannot be
+            used.
         OutputError: the folder is not ours, or cannot be written.
     """
     check_output_folder(out)
     evaluated = evaluate_with_bar(policies, workers=workers, progress=progress, **options)
-    any_policy = bool(evaluated.policies) or evaluated.rewards is not None
-    with output_folder(out) as folder:
-        sections = (
-            [Section(part.title, part.content) for part in policy_parts(evaluated, folder)]
-            if any_policy
-            else []
+    if not evaluated.policies and evaluated.rewards is None:
+        remedy = (
+            "holds no finished training of the study; expects folders such as walk_upright-toe-1, "
+            "which `hyperleg campaign run campaign` makes, or no --policies for the shipped ones"
         )
+        raise InputError("policies", "", str(policies or shipped_folder()), remedy)
+    with output_folder(out) as folder:
+        sections = [Section(part.title, part.content) for part in policy_parts(evaluated, folder)]
         commit = provenance.git_commit()
         page = Page(
             title="Active toes: the paper's experiment, run again",
-            lead=LEAD if any_policy else NO_POLICY,
+            lead=LEAD,
             sections=sections,
             provenance={
                 **provenance.versions(),
