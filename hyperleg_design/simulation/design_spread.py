@@ -90,16 +90,14 @@ class DesignSpread:
                 actuation, such as those of a toe motor that is not there; too few robots in the
                 ranges.
         """
-        robot = base.variant or base.name
-        missing = [path for path in self.ranges.ranges if path not in base.rules]
-        if missing:
-            remedy = f"{robot} has no such parameters; leave out {', '.join(missing)}"
-            raise InputError("design ranges", missing[0], None, remedy)
+        self.designs(base)
         idle = [path for path in self.ranges.ranges if not self._has_effect(path, base, physics)]
         if idle:
-            remedy = f"changes nothing in the simulation of {robot}; leave out {', '.join(idle)}"
+            remedy = (
+                f"changes nothing in the simulation of {base.variant or base.name}; "
+                f"leave out {', '.join(idle)}"
+            )
             raise InputError("design ranges", idle[0], None, remedy)
-        self.designs(base)
 
     def _has_effect(self, path: str, base: RobotDesign, physics: Physics) -> bool:
         bounds = self.ranges.ranges[path]
@@ -184,8 +182,10 @@ def _drawn(base: RobotDesign, ranges: DesignRanges, count: int, seed: int) -> Ro
     """Designs drawn evenly over ranges, without those that are no robots, a batch.
 
     Raises:
-        InputError: too many of the drawn designs are no robots; names the last one's reason.
+        InputError: leaves that the robot lacks, or too many of the drawn designs are no robots;
+            names the last one's reason.
     """
+    ranges.check_leaves(base, "design ranges")
     rng = np.random.default_rng(seed)
     drawn: list[dict[str, Any]] = []
     error: InputError | None = None

@@ -20,11 +20,14 @@ LIMITED = """
 <mujoco model="limited">
   <worldbody>
     <body name="arm" pos="0 0 1">
-      <joint name="swing" axis="0 1 0" range="{low} {high}" damping="0.02" frictionloss="{friction}" armature="0.003"/>
+      <joint name="swing" axis="0 1 0" range="{low} {high}" damping="0.02" armature="0.003"
+        frictionloss="{friction}"/>
       <inertial pos="0 0 -0.1" mass="0.5" diaginertia="0.0006 0.0006 0.0001"/>
     </body>
   </worldbody>
-  <actuator><position name="servo" joint="swing" kp="6" kv="0.15" forcerange="-{peak} {peak}"/></actuator>
+  <actuator>
+    <position name="servo" joint="swing" kp="6" kv="0.15" forcerange="-{peak} {peak}"/>
+  </actuator>
 </mujoco>
 """
 
