@@ -136,30 +136,6 @@ def standing(joints: int) -> Policy:
     return lambda observation: np.zeros((len(observation), joints))
 
 
-@dataclass(eq=False)
-class Scripted:
-    """Policy that plays a sequence of actions, the same in all trials, and holds the last."""
-
-    actions: np.ndarray
-    """Action of each policy step, `(steps, J)`."""
-    step: int = 0
-    """Next row."""
-
-    def reset(self, trials: int) -> None:
-        """Begin the script anew for all trials.
-
-        Args:
-            trials: number of trials; the script is the same for all of them.
-        """
-        self.step = 0
-
-    def __call__(self, observation: np.ndarray) -> np.ndarray:
-        """The next row for every trial, `(n, J)`."""
-        row = self.actions[min(self.step, len(self.actions) - 1)]
-        self.step += 1
-        return np.broadcast_to(row, (len(observation), len(row)))
-
-
 def policy_name(policy: Policy) -> str:
     """Name a policy for messages and tables.
 

@@ -10,11 +10,9 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.policy import (
-    Scripted,
     check_layout,
     checked_action,
     load_policy,
-    policy_name,
     standing,
 )
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
@@ -124,12 +122,3 @@ def test_nan_names_step_and_trial(make_onnx):
         checked_action(late, np.zeros((3, 5)), 7, 0.02, np.ones(3, bool), 14)
     found = checked_action(late, np.zeros((3, 5)), 7, 0.02, np.array([True, False, True]), 14)
     assert np.all(found == 0)
-
-
-def test_a_script_starts_anew_for_each_evaluation():
-    script = Scripted(np.arange(6.0).reshape(3, 2))
-    assert [script(np.zeros((2, 1)))[0, 0] for _ in range(4)] == [0, 2, 4, 4]
-    script.reset(2)
-    assert script(np.zeros((2, 1))).tolist() == [[0, 1], [0, 1]]
-    assert policy_name(script) == "Scripted"
-    assert policy_name(standing(3)) == "policy"

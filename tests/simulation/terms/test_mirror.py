@@ -9,9 +9,17 @@ from hyperleg_design.simulation.settings import Start
 from hyperleg_design.simulation.terms.mirror import (
     mirror_joints,
     mirror_observation,
-    mirror_position,
 )
 from hyperleg_design.simulation.terms.observations import PARTS, size
+
+
+def mirror_position(qpos, qvel, layout):
+    """MuJoCo states mirrored in the plane y = 0, `(..., 7 + J)` and `(..., 6 + J)`."""
+    position, velocity, joints = qpos.copy(), qvel.copy(), mirror_joints(layout)
+    position[..., [1, 4, 6]] *= -1  # y; quaternion x and z
+    velocity[..., [1, 3, 5]] *= -1
+    position[..., 7:], velocity[..., 6:] = joints(qpos[..., 7:]), joints(qvel[..., 6:])
+    return position, velocity
 
 
 @pytest.mark.parametrize("parts", [tuple(PARTS), ("proprioception",), ("clock", "waypoint")])
