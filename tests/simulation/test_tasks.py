@@ -146,9 +146,10 @@ def test_starts_in_mid_stride_need_a_humans_joints():
     task.check_robot(layout_of(load_robot("parallel_ankle")), "parallel_ankle")
 
 
+@pytest.mark.parametrize("task", ["walk_any", "t_test_any"])
 @pytest.mark.parametrize("name", ["hyperleg", "mini_cheetah", "parallel_ankle"])
-def test_the_walk_for_any_robot_fits_every_walker(name):
-    environment = Environment(load_robot(name), load_task("walk_any"), simulations=2, seed=1)
+def test_the_tasks_for_any_robot_fit_every_walker(name, task):
+    environment = Environment(load_robot(name), load_task(task), simulations=2, seed=1)
     environment.reset()
     for _ in range(10):
         step = environment.step(np.zeros((2, environment.action_size)))

@@ -9,15 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design import provenance
-from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.result_tables import write_results
-from hyperleg_design.evaluation.shipped import shipped_folder
 from hyperleg_design.report import page as pages
 from hyperleg_design.report.drawer import FIGURES, Drawer
 from hyperleg_design.report.page import Page, Section
 from hyperleg_design.report.text import table
 from hyperleg_design.report.walks.beside_paper import row_facts, rows_beside_paper
-from hyperleg_design.report.walks.evaluated import Evaluated, evaluate_shipped
+from hyperleg_design.report.walks.evaluated import Evaluated, check_policies, evaluate_shipped
 from hyperleg_design.report.walks.planned_part import planned_rows, row_numbers
 from hyperleg_design.report.walks.policy_parts import parts
 from hyperleg_design.report.walks.rewards_part import reward_rows
@@ -61,13 +59,8 @@ def run_paper(
         OutputError: the folder is not ours, or cannot be written.
     """
     check_output_folder(out)
+    check_policies(policies)
     evaluated = evaluate_with_bar(policies, workers=workers, progress=progress, **options)
-    if not evaluated.policies and evaluated.rewards is None:
-        remedy = (
-            "holds no finished training of the study; expects folders such as walk_upright-toe-1, "
-            "which `hyperleg campaign run campaign` makes, or no --policies for the shipped ones"
-        )
-        raise InputError("policies", "", str(policies or shipped_folder()), remedy)
     with output_folder(out) as folder:
         sections = [Section(part.title, part.content) for part in policy_parts(evaluated, folder)]
         commit = provenance.git_commit()
