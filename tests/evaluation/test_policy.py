@@ -122,3 +122,11 @@ def test_nan_names_step_and_trial(make_onnx):
         checked_action(late, np.zeros((3, 5)), 7, 0.02, np.ones(3, bool), 14)
     found = checked_action(late, np.zeros((3, 5)), 7, 0.02, np.array([True, False, True]), 14)
     assert np.all(found == 0)
+
+
+def test_a_broken_policy_is_named_with_the_folder_of_its_training(tmp_path):
+    path = tmp_path / "walk-toe-0" / "policy.onnx"
+    path.parent.mkdir()
+    path.write_bytes(b"cut off")
+    with pytest.raises(InputError, match=r"^walk-toe-0/policy\.onnx: is no whole ONNX file"):
+        load_policy(path)
