@@ -32,8 +32,8 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> Path:
         The path.
 
     Raises:
-        OutputError: the disk is full or the place cannot be written; the old file, if any, is
-        untouched.
+        OutputError: the disk is full, the place cannot be written or is a folder; the old file, if
+            any, is untouched.
     """
     path = Path(path)
     temporary: Path | None = None
@@ -48,6 +48,8 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> Path:
         temporary.chmod(0o644)
         temporary.replace(path)
         temporary = None
+    except IsADirectoryError:
+        raise OutputError(f"{path}: is a folder; give the name of a file") from None
     except OSError as error:
         raise OutputError(
             f"{path}: cannot be written ({error.strerror or error}); free some space or choose "

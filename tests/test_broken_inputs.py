@@ -306,6 +306,9 @@ CASES: list[tuple[tuple[str, ...], tuple[str, ...]]] = [
     # folders in place of files, and places below files
     (("analyze", "--design", "folder.yaml"), ("folder.yaml", "is a folder")),
     (("evaluate", POLICY, "--protocol", "folder.yaml", *OUT), ("folder.yaml", "is a folder")),
+    (("evaluate", "folder.yaml", *OUT), ("folder.yaml", "without policy.onnx")),
+    (("paper", "--policies", "folder.yaml", *OUT), ("folder.yaml", "no finished training")),
+    (("variants", "walk_any-mini_cheetah-0", *OUT), ("mini_cheetah: no such field", "toe.mass")),
     (("analyze", "--out", "notes.txt/page"), ("notes.txt", "is a file")),
     (("evaluate", POLICY, "--logs", "notes.txt/logs", *OUT), ("notes.txt", "is a file")),
     # the gap's verbs

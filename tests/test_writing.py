@@ -69,6 +69,13 @@ def test_a_place_that_is_no_folder(tmp_path: Path):
             action()
 
 
+def test_a_folder_in_place_of_a_file_is_told(tmp_path: Path):
+    (tmp_path / "a").mkdir()
+    with pytest.raises(OutputError, match="a: is a folder; give the name of a file"):
+        writing.write_text(tmp_path / "a", "x")
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]
+
+
 def make(folder: Path, text: str) -> None:
     with writing.output_folder(folder) as inside:
         (inside / "a.txt").write_text(text)

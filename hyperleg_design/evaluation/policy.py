@@ -104,20 +104,21 @@ def load_policy(name: str | Path) -> OnnxPolicy:
         InputError: missing, truncated or foreign file, or metadata that does not fit its graph.
     """
     path = find_policy(name)
+    where = short_name(path)
     try:
         content = path.read_bytes()
     except OSError as error:
-        raise InputError(str(path), "", None, f"cannot be read ({error.strerror})") from None
-    session = _session(content, path.name)
-    metadata = _metadata(session, path.name)
-    columns, joints = (_names(metadata[key], path.name, key) for key in ("columns", "joints"))
-    _check_graph(session, path.name, len(columns), len(joints))
+        raise InputError(where, "", None, f"cannot be read ({error.strerror})") from None
+    session = _session(content, where)
+    metadata = _metadata(session, where)
+    columns, joints = (_names(metadata[key], where, key) for key in ("columns", "joints"))
+    _check_graph(session, where, len(columns), len(joints))
     return OnnxPolicy(
         name=short_name(path.with_suffix("")),
         columns=columns,
         joints=joints,
-        design=robot_from_mapping(metadata["design"], f"{path.name}: design"),
-        task=task_from_mapping(metadata["task"], f"{path.name}: task"),
+        design=robot_from_mapping(metadata["design"], f"{where}: design"),
+        task=task_from_mapping(metadata["task"], f"{where}: task"),
         metadata=metadata,
         session=session,
     )
@@ -133,30 +134,6 @@ def standing(joints: int) -> Policy:
         A callable that returns zeros `(n, joints)` for observations `(n, k)`.
     """
     return lambda observation: np.zeros((len(observation), joints))
-
-
-@dataclass(eq=False)
-class Scripted:
-    """Policy that plays a sequence of actions, the same in all trials, and holds the last."""
-
-    actions: np.ndarray
-    """Action of each policy step, `(steps, J)`."""
-    step: int = 0
-    """Next row."""
-
-    def reset(self, trials: int) -> None:
-        """Begin the script anew for all trials.
-
-        Args:
-            trials: number of trials; the script is the same for all of them.
-        """
-        self.step = 0
-
-    def __call__(self, observation: np.ndarray) -> np.ndarray:
-        """The next row for every trial, `(n, J)`."""
-        row = self.actions[min(self.step, len(self.actions) - 1)]
-        self.step += 1
-        return np.broadcast_to(row, (len(observation), len(row)))
 
 
 def policy_name(policy: Policy) -> str:

@@ -28,8 +28,13 @@ _TASKS = {
     ("hyperleg", "walk"): ("walk", "walk"),
     ("hyperleg", "t_test"): ("t_test", "goal"),
     ("tree", "walk"): ("walk_any", "walk_any --preset walker"),
+    ("tree", "t_test"): (
+        "t_test_any",
+        "t_test_any --preset walker --start FOLDER/walk_any-NAME-0",
+    ),
 }
-"""Group and options of `hyperleg train` that give a policy, by family and kind of protocol."""
+"""Group and options of `hyperleg train` that give a policy, by family and kind of protocol; NAME is
+the robot's."""
 
 
 def policies_for(
@@ -95,11 +100,9 @@ def _remedy(kind: str, design: RobotDesign) -> str:
     """How to get a policy for a robot."""
     name = trained_names(design)[0]
     if (design.family, kind) not in _TASKS:
-        return (
-            f"no shipped task trains one: train a task of your own (of waypoints for t_test) with "
-            f"--out FOLDER/{kind}-{name}-0 and give --policies FOLDER"
-        )
+        return "no shipped task trains one: train a task of your own and give --policies FOLDER"
     group, options = _TASKS[design.family, kind]
+    options = options.replace("NAME", name)
     robot = design_argument(design) if isinstance(design, TreeDesign) else name
     return (
         f"hyperleg train --task {options} --design {robot} --out FOLDER/{group}-{name}-0 trains "

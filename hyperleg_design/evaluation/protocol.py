@@ -214,15 +214,6 @@ class TTestProtocol(Protocol):
 _KINDS: dict[str, type[Protocol]] = {"walk": WalkProtocol, "t_test": TTestProtocol}
 
 
-def protocol_names() -> list[str]:
-    """List the shipped protocols.
-
-    Returns:
-        Their names, sorted.
-    """
-    return resources.sim_names("protocol")
-
-
 def load_protocol(name: str | Path) -> Protocol:
     """Read an evaluation protocol from a shipped file or a file of the user.
 

@@ -210,24 +210,6 @@ def _path(trial: Trial) -> np.ndarray:
     )
 
 
-def by_seed(table: pd.DataFrame, measure: str) -> list[np.ndarray]:
-    """Group a measure of a trial table by training seed; checkpoints of a seed are pooled.
-
-    Policies that do not state their seed count as a seed each.
-
-    Args:
-        table: as `trial_table` makes it.
-        measure: name of its column.
-
-    Returns:
-        One array of values for each seed.
-
-    Raises:
-        InputError: no such column.
-    """
-    return [np.concatenate(seed) for seed in by_checkpoint(table, measure).values()]
-
-
 def counted(table: pd.DataFrame, measure: str) -> pd.Series:
     """Choose the values of a measure that count in means over trials: NaN for trials that fell,
     except for how trials ended.

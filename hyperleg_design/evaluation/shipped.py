@@ -179,7 +179,8 @@ def find_policy(name: str | Path, where: str = "policy") -> Path:
         The path of the ONNX file.
 
     Raises:
-        InputError: none of these, which lists what is shipped, or a training that is not finished.
+        InputError: none of these, which lists what is shipped, or a training that is not finished,
+            or another folder.
     """
     path = Path(name)
     if path.is_file():
@@ -193,6 +194,9 @@ def find_policy(name: str | Path, where: str = "policy") -> Path:
     named = shipped_folder() / path / POLICY
     if len(path.parts) == 1 and named.is_file():
         return named
+    if path.is_dir():
+        remedy = f"is a folder without {POLICY}; expects an ONNX file or the folder of a training"
+        raise InputError(where, "", str(name), remedy)
     known = [policy.training for policy in shipped_policies(late=False)]
     shipped = f"Shipped, with their seeds: {trainings_text(known) or 'none'}"
     remedy = f"{meant(str(name), known, 'no near name.')} {shipped}"

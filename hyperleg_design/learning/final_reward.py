@@ -11,11 +11,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.simulation.tasks import Reward
 
 if TYPE_CHECKING:
-    from hyperleg_design.learning.preset import Preset, Stage
-    from hyperleg_design.simulation.tasks import Task
+    from hyperleg_design.learning.preset import Stage
 
 
 def settled_after(stages: Sequence[Stage]) -> float:
@@ -63,42 +61,6 @@ def final_share(stages: Sequence[Stage]) -> float:
     """
     total = sum(stage.steps for stage in stages)
     return max(0.0, 1.0 - settled_after(stages) / total)
-
-
-def final_rewards(preset: Preset, task: Task) -> dict[str, Reward]:
-    """Collect the reward terms that count at the end of a training.
-
-    Args:
-        preset: of the training.
-        task: of the training.
-
-    Returns:
-        The terms by name; those of weight zero are left out.
-
-    Raises:
-        InputError: the preset has no stages for the task.
-    """
-    rewards = {
-        name: (reward.weight, dict(reward.parameters)) for name, reward in task.rewards.items()
-    }
-    for stage in preset.stages(task.name):
-        changes = [
-            (name, key, value)
-            for name, given in stage.rewards.items()
-            for key, value in given.items()
-        ]
-        changes += [
-            (ramp.target[1], ramp.target[2], ramp.high)
-            for ramp in stage.ramps
-            if ramp.target[0] == "rewards"
-        ]
-        for name, key, value in changes:
-            parameters = rewards[name][1]
-            if key == "weight":
-                rewards[name] = (value, parameters)
-            else:
-                parameters[key] = value
-    return {name: Reward(weight, given) for name, (weight, given) in rewards.items() if weight}
 
 
 def check_final_share(stages: Sequence[Stage], least: float, where: str, path: str) -> None:

@@ -35,15 +35,6 @@ FINITE = (-1e12, 1e12)
 """Range of numbers that are taken for meant."""
 
 
-def preset_names() -> list[str]:
-    """List the shipped presets.
-
-    Returns:
-        Their names, sorted.
-    """
-    return resources.sim_names("preset")
-
-
 def load_preset(name: str | Path) -> Preset:
     """Read a training preset from a shipped file or a file of the user.
 

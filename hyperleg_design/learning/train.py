@@ -80,8 +80,8 @@ def train(
             joints; one that is conditioned on its design starts a training of one design inside of
             its ranges. From scratch by default.
         designs: what designs to draw from, with a shipped name or a file: the policy observes its
-            design and learns them all. They are `design` with other leaves. Without, the policy
-            learns the one design.
+            design and learns them all. They are `design` with other leaves, each of which must
+            change its simulation. Without, the policy learns the one design.
         threads: of physics and learning. One by default: trainings side by side use processors
             best. Resuming is bit for bit with the same number only.
         device: where the networks learn, as torch writes it (`cuda`); simulations and actions stay
@@ -119,6 +119,8 @@ def train(
     preset = preset if isinstance(preset, Preset) else load_preset(preset)
     preset.stages(task.name)
     task.check_robot(layout_of(task.posed(design)), design.name)
+    if spread:
+        spread.check_robot(task.posed(design), task.physics)
     if check_device(device) != HOST and preset.algorithm.adapted != "iteration":
         remedy = f"expects a preset with algorithm.adapted: iteration, not {preset.name}"
         raise InputError("--device", "", device, remedy)

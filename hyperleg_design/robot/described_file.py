@@ -101,7 +101,10 @@ def read_robot(path: str | Path, *, meshes: bool = True) -> FileRobot:
     elif root.tag == "mujoco":
         robot = _mjcf(path, where)
     else:
-        raise InputError(where, f"<{root.tag}>", None, "expects a URDF (<robot>) or an MJCF")
+        remedy = "expects a URDF (<robot>) or an MJCF (<mujoco>)"
+        if root.tag == "sdf":
+            remedy = "is SDF, which is not read; convert it to URDF or MJCF first"
+        raise InputError(where, f"<{root.tag}>", None, remedy)
     for name, joint in robot.joints.items():
         step = float(np.linalg.norm(joint.position))
         if step > LARGEST_STEP:

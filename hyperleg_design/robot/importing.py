@@ -216,7 +216,8 @@ def _fields(held: Any, where: str, place: str, example: str) -> Mapping[str, Any
 def _matching(pattern: str, names: list[str], where: str, place: str) -> list[str]:
     matching = [name for name in names if fnmatchcase(name, pattern)]
     if not matching:
-        remedy = parameters.unknown(pattern, names).replace("such field", "such moving joint")
+        kind = "joint" if place == "joints" else "moving joint"
+        remedy = parameters.unknown(pattern, names, kind)
         raise InputError(where, f"{place}.{pattern}", None, remedy)
     return matching
 

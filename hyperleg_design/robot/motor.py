@@ -212,21 +212,6 @@ class Motor:
         """
         return self.power_constant(constants) * self.rated_torque**2
 
-    def peak_power(self, constants: str = "paper") -> float:
-        """Compute the largest mechanical power inside the envelope.
-
-        Args:
-            constants: name of the preset of constants, as in `no_load_speed`.
-
-        Returns:
-            The power [W].
-        """
-        speed = max(self.corner_speed(constants), self.no_load_speed(constants) / 2)
-        return speed * min(
-            self.peak_torque(constants),
-            self.stall_torque(constants) * (1 - speed / self.no_load_speed(constants)),
-        )
-
 
 def load_motor(path: Path) -> Motor:
     """Read one file of the motor catalogue.

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.parameters.described import RobotDesign
     from hyperleg_design.robot.parameters.hyperleg import HyperLeg
 
-HIP = slice(0, 3)
 KNEE, ANKLE_PITCH, ANKLE_ROLL, TOE = 3, 4, 5, 6
 """Rows of M below the hip."""
 M_KNEE, M_ANKLE_LEFT, M_ANKLE_RIGHT, M_TOE = 3, 4, 5, 6

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -37,68 +37,6 @@ class VelocityCommands(Checked):
     """Fraction of commands that are zero [-]."""
     interval: Any = number("s", 0.1, 10000, default=10.0)
     """Time between two commands [s]."""
-
-
-class Commander(Protocol):
-    """Keeps the commands of all simulations."""
-
-    settings: Any
-
-    def reset(self, ids: np.ndarray, motion: Motion, rng: Random) -> Goal | None:
-        """Give new commands at the start of episodes.
-
-        Args:
-            ids: indices of the simulations.
-            motion: of these simulations, in the same order.
-            rng: random numbers.
-
-        Returns:
-            Where each of them stands to its waypoint; None without waypoints.
-        """
-
-    def judge(self, motion: Motion) -> Goal | None:
-        """Compute where each simulation stands to its waypoint.
-
-        Args:
-            motion: of all simulations.
-
-        Returns:
-            Distances and arrivals; None without waypoints.
-        """
-
-    def advance(self, motion: Motion, goal: Goal | None, duration: float, rng: Random) -> None:
-        """Go on by one policy step, after it was judged.
-
-        Args:
-            motion: of all simulations.
-            goal: as judged; rows that get a new waypoint then describe that.
-            duration: of the policy step [s].
-            rng: random numbers.
-        """
-
-    def vector(self, goal: Goal | None, ids: np.ndarray | None = None) -> np.ndarray:
-        """Compute the command that a policy observes.
-
-        Args:
-            goal: of the simulations `ids`, or of all.
-            ids: indices of the simulations; all by default.
-
-        Returns:
-            The command, `(n, 3)`.
-        """
-
-    turns: bool
-    """Whether the robots have to turn; an assist then leaves their yaw to them."""
-
-    def wanted(self, goal: Goal | None) -> np.ndarray:
-        """Compute how fast the robots should go straight ahead.
-
-        Args:
-            goal: of all simulations.
-
-        Returns:
-            Speed [m/s], `(n,)`.
-        """
 
 
 class VelocityCommander:

@@ -129,6 +129,26 @@ class DesignRanges:
                 f"choose a design inside, or a policy of one design",
             )
 
+    def check_leaves(self, design: RobotDesign, where: str) -> None:
+        """Check that a robot has a number for every range.
+
+        Args:
+            design: the robot, or a batch of its kind.
+            where: file, for error messages.
+
+        Raises:
+            InputError: a path that is no single number of the robot.
+        """
+        rules, robot = design.rules, design.variant or design.name
+        missing = [path for path in self.ranges if path not in rules]
+        if missing:
+            more = f"; nor has {robot} {', '.join(missing[1:])}" if missing[1:] else ""
+            remedy = f"{parameters.unknown(missing[0], sorted(rules))}{more}"
+            raise InputError(where, missing[0], None, f"of {robot}: {remedy}")
+        for path in self.ranges:
+            if rules[path].kind != "number" or rules[path].size:
+                raise InputError(where, path, None, "is not a single number; choose another leaf")
+
     def draw(self, count: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
         """Draw designs evenly over the ranges.
 
@@ -169,18 +189,14 @@ def design_ranges(data: Any, where: str) -> DesignRanges:
         The validated ranges.
 
     Raises:
-        InputError: no mapping, a path that is no single number of a design, or no range.
+        InputError: no mapping, or no range. `check_leaves` says whether a robot has the leaves.
     """
-    from hyperleg_design.robot.design import Design
-
     if not isinstance(data, Mapping) or not data:
         raise InputError(where, "", data, "expects a mapping of leaves to {low, high}")
-    rules, ranges = parameters.rules(Design), {}
+    ranges = {}
     for path, entry in data.items():
-        if path not in rules:
-            raise InputError(where, str(path), entry, parameters.unknown(str(path), sorted(rules)))
-        if rules[path].kind != "number" or rules[path].size:
-            raise InputError(where, path, entry, "is not a single number; choose another leaf")
+        if not isinstance(path, str):
+            raise InputError(where, str(path), entry, "expects the dotted path of a leaf")
         if not isinstance(entry, Mapping) or not {"low", "high"} <= set(entry) <= {
             "low",
             "high",

@@ -5,11 +5,13 @@ and how many designs with which seed.
 from __future__ import annotations
 
 import dataclasses
+import pickle
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import mujoco
 import numpy as np
 
 from hyperleg_design import resources
@@ -17,9 +19,13 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
+from hyperleg_design.simulation.drives.actuation import motor_friction
+from hyperleg_design.simulation.drives.machine import machine_of
+from hyperleg_design.simulation.model import simulation_model
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.parameters.described import RobotDesign
+    from hyperleg_design.simulation.settings import Physics
 
 TRIES = 4
 """Designs that are drawn for each that is needed before drawing is given up: some ranges have
@@ -71,6 +77,38 @@ class DesignSpread:
             A batch of `held_out` designs.
         """
         return _drawn(base, self.ranges, self.held_out, self.held_out_seed)
+
+    def check_robot(self, base: RobotDesign, physics: Physics) -> None:
+        """Check that the ranges suit a robot: it has every leaf, and each changes its simulation.
+
+        Args:
+            base: the robot whose leaves are replaced.
+            physics: settings of the simulation.
+
+        Raises:
+            InputError: leaves that the robot lacks, or whose two ends give the same model and
+                actuation, such as those of a toe motor that is not there; too few robots in the
+                ranges.
+        """
+        self.designs(base)
+        idle = [path for path in self.ranges.ranges if not self._has_effect(path, base, physics)]
+        if idle:
+            remedy = (
+                f"changes nothing in the simulation of {base.variant or base.name}; "
+                f"leave out {', '.join(idle)}"
+            )
+            raise InputError("design ranges", idle[0], None, remedy)
+
+    def _has_effect(self, path: str, base: RobotDesign, physics: Physics) -> bool:
+        bounds = self.ranges.ranges[path]
+        try:
+            low, high = (
+                _simulated(base.with_values({path: value}, "design ranges"), physics)
+                for value in (bounds.low, bounds.high)
+            )
+        except InputError:  # an end may be no robot beside the other leaves of `base`
+            return True
+        return low != high
 
 
 _WHOLE = {
@@ -131,12 +169,23 @@ def design_spread(data: Mapping[str, Any], where: str) -> DesignSpread:
     return spread
 
 
+def _simulated(design: RobotDesign, physics: Physics) -> bytes:
+    """All that the simulation of a robot computes with."""
+    model = simulation_model(design, physics)
+    buffer = np.empty(mujoco.mj_sizeModel(model), np.uint8)
+    mujoco.mj_saveModel(model, buffer=buffer)
+    machine, friction = machine_of(design), motor_friction(design)
+    return buffer.tobytes() + pickle.dumps((vars(machine), friction))
+
+
 def _drawn(base: RobotDesign, ranges: DesignRanges, count: int, seed: int) -> RobotDesign:
     """Designs drawn evenly over ranges, without those that are no robots, a batch.
 
     Raises:
-        InputError: too many of the drawn designs are no robots; names the last one's reason.
+        InputError: leaves that the robot lacks, or too many of the drawn designs are no robots;
+            names the last one's reason.
     """
+    ranges.check_leaves(base, "design ranges")
     rng = np.random.default_rng(seed)
     drawn: list[dict[str, Any]] = []
     error: InputError | None = None

@@ -251,15 +251,6 @@ def _paper_weights() -> dict[str, float]:
     return {n: r.weight for task in tasks for n, r in task.rewards.items() if TERMS[n].paper}
 
 
-def task_names() -> list[str]:
-    """List the shipped tasks.
-
-    Returns:
-        Their names, sorted.
-    """
-    return resources.sim_names("task")
-
-
 def task_from_mapping(data: Mapping[str, Any], where: str) -> Task:
     """Build a task from nested mappings, as YAML gives them.
 

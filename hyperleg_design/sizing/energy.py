@@ -23,12 +23,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot.motors import motor_arrays
-from hyperleg_design.robot.transmission import motor_names
 from hyperleg_design.sizing.motions.motion import GRAVITY
 
 if TYPE_CHECKING:
-    from hyperleg_design.robot.design import Design
+    pass
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,35 +239,6 @@ def energy_ledger(
     )
 
 
-def design_ledger(
-    design: Design, motor_torque: Any, motor_velocity: Any, time_step: float
-) -> EnergyLedger:
-    """Compute the ledger of one leg with the power constants and driver efficiencies of a design.
-
-    Args:
-        design: a robot or batch.
-        motor_torque: of the motors that are there [Nm], `(..., t, motors)`.
-        motor_velocity: [rad/s], `(..., t, motors)`.
-        time_step: between samples [s].
-
-    Returns:
-        The ledger, each power `(..., t, motors)` [W].
-
-    Raises:
-        InputError: as `energy_ledger`.
-    """
-    count = len(motor_names(design))
-    constants = motor_arrays(design).power_constant[..., :count]
-    return energy_ledger(
-        motor_torque,
-        motor_velocity,
-        time_step,
-        constants,
-        design.electrical.efficiency_out,
-        design.electrical.efficiency_regen,
-    )
-
-
 def joint_power(joint_torque: Any, joint_velocity: Any) -> np.ndarray:
     """Compute the mechanical power of each joint, tau_joint q_dot.
 
@@ -311,38 +280,17 @@ def cost_of_transport(energy: Any, mass: Any, distance: Any) -> np.ndarray:
     Raises:
         InputError: a mass or distance that is not positive.
     """
-    return _per_weight(energy, mass, distance, "distance", "m")
-
-
-def power_cost_of_transport(power: Any, mass: Any, speed: Any) -> np.ndarray:
-    """Compute the cost of transport from mean power and speed, power / (m g v).
-
-    Args:
-        power: [W], `(...)`.
-        mass: [kg], `(...)`.
-        speed: [m/s], `(...)`.
-
-    Returns:
-        The cost [-], `(...)`.
-
-    Raises:
-        InputError: a mass or speed that is not positive.
-    """
-    return _per_weight(power, mass, speed, "speed", "m/s")
-
-
-def _per_weight(amount: Any, mass: Any, per: Any, name: str, unit: str) -> np.ndarray:
-    amount, mass, per = (np.asarray(v, float) for v in (amount, mass, per))
-    for field, value, of in (("mass", mass, "kg"), (name, per, unit)):
+    energy, mass, distance = (np.asarray(v, float) for v in (energy, mass, distance))
+    for field, value, unit in (("mass", mass, "kg"), ("distance", distance, "m")):
         if not np.all(np.isfinite(value) & (value > 0)):
             worst = float(value.flat[np.argmin(np.where(np.isfinite(value), value, -np.inf))])
             raise InputError(
                 "cost of transport",
                 field,
                 worst,
-                f"expects a positive number in {of}; without it no transport is done",
+                f"expects a positive number in {unit}; without it no transport is done",
             )
-    return np.asarray(amount / (mass * GRAVITY * per))
+    return np.asarray(energy / (mass * GRAVITY * distance))
 
 
 def _samples(value: Any, field: str) -> np.ndarray:

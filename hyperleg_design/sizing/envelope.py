@@ -25,10 +25,6 @@ from hyperleg_design.robot.transmission import motor_names
 if TYPE_CHECKING:
     from hyperleg_design.robot.parameters.described import RobotDesign
 
-BRAKING, IDLE, DRIVING = -1, 0, 1
-"""What `quadrant` returns: the motor takes power from the joint, exchanges none, gives power to
-it."""
-
 
 @dataclass(frozen=True, eq=False)
 class MotorEnvelope:
@@ -133,16 +129,3 @@ def clip_torque(
     """
     lower, upper = torque_limits(envelope, motor_velocity)
     return np.clip(motor_torque, lower, upper)
-
-
-def quadrant(motor_torque: np.ndarray, motor_velocity: np.ndarray) -> np.ndarray:
-    """Classify operating points by the sign of their mechanical power.
-
-    Args:
-        motor_torque: [Nm], `(..., motors)`.
-        motor_velocity: [rad/s], `(..., motors)`.
-
-    Returns:
-        `DRIVING`, `IDLE` or `BRAKING` (the regenerative quadrants), `(..., motors)`.
-    """
-    return np.sign(np.asarray(motor_torque) * np.asarray(motor_velocity)).astype(int)

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
 from hyperleg_design.robot.checks.consistency import leg_length
 from hyperleg_design.robot.mass.bodies import Inertial
 from hyperleg_design.robot.mass.inertials import LEG_LINKS, inertials
@@ -155,58 +154,6 @@ def composite(
         moment = moment + weight[..., None] * centre
         inertia = inertia + link.inertia + weight[..., None, None] * squared
     return mass, moment / mass[..., None], inertia
-
-
-def com_height(design: Design) -> np.ndarray:
-    """Compute the height of the robot's centre of mass above the ground, standing straight.
-
-    Args:
-        design: a robot or batch.
-
-    Returns:
-        The height [m], `(...)`.
-    """
-    links = inertials(design)
-    leg_mass, leg_com, _ = composite(design, links, LEG_LINKS)
-    pelvis = links["pelvis"]
-    total = np.asarray(pelvis.mass) + 2 * leg_mass
-    below = (pelvis.mass * pelvis.com[..., 2] + 2 * leg_mass * leg_com[..., 2]) / total
-    return np.asarray(leg_length(design) + below)
-
-
-def centroidal_inertia(design: Design, q: np.ndarray | None = None) -> np.ndarray:
-    """Compute the inertia of the whole robot about its centre of mass with Pinocchio, without
-    rotors.
-
-    Args:
-        design: one robot.
-        q: configuration of its floating model, of `robot.models.rigid_body_model`; straight legs by
-            default.
-
-    Returns:
-        The inertia in base axes [kg m^2], `(3, 3)`.
-
-    Raises:
-        InputError: a batch of designs.
-    """
-    import pinocchio as pin
-
-    from hyperleg_design.robot.models import quaternion_matrix, rigid_body_model
-
-    if design.batch_shape:
-        raise InputError(design.name, "", None, "holds a batch of designs; take one of them")
-    body = rigid_body_model(design)
-    q = body.neutral() if q is None else np.asarray(q, float)
-    if q.shape != (body.model.nq,):
-        raise InputError(
-            design.name,
-            "q",
-            list(q.shape),
-            f"is the shape found; expects a configuration, ({body.model.nq},)",
-        )
-    pin.ccrba(body.model, body.data, q, np.zeros(body.model.nv))
-    rotation = quaternion_matrix(q[3:7])
-    return rotation.T @ np.array(body.data.Ig.inertia) @ rotation
 
 
 def _origins(design: Design) -> dict[str, np.ndarray]:

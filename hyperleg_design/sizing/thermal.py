@@ -175,46 +175,6 @@ def thermal_use(
     )
 
 
-def time_to_limit(
-    torque: Any,
-    rated_torque: Any,
-    *,
-    limit: float = 1.0,
-    time_constant: float = TIME_CONSTANT,
-    reading: str = "ema_of_square",
-) -> np.ndarray:
-    """Time for which a cold motor can hold a constant torque until its thermal use reaches the
-    limit [s].
-
-    With x = |tau| / tau_rated: T ln(x^2 / (x^2 - limit)), or T ln(x / (x - sqrt(limit))) for
-    `square_of_ema`.
-
-    Args:
-        torque: [Nm], `(...)`.
-        rated_torque: continuous torque [Nm], `(...)`.
-        limit: largest use [-].
-        time_constant: of the moving average [s].
-        reading: one of `READINGS`.
-
-    Returns:
-        `(...)`; infinite where the torque can be held for ever.
-
-    Raises:
-        InputError: no such reading, or a limit, time constant or rated torque that is not positive.
-    """
-    for field, value in (("limit", limit), ("time_constant", time_constant)):
-        if not (np.isfinite(value) and value > 0):
-            raise InputError("thermal", field, value, "expects a positive number")
-    relative = np.abs(np.asarray(torque, float)) / _rated(rated_torque)
-    load, bound = (
-        (relative**2, limit) if _reading(reading) == "ema_of_square" else (relative, np.sqrt(limit))
-    )
-    with np.errstate(divide="ignore"):
-        return np.asarray(
-            -time_constant * np.log1p(-np.minimum(bound / np.maximum(load, bound), 1.0))
-        )
-
-
 def _rated(value: Any) -> np.ndarray:
     rated = np.asarray(value, float)
     if not np.all(np.isfinite(rated) & (rated > 0)):

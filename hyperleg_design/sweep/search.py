@@ -49,7 +49,6 @@ from hyperleg_design.writing import plain
 
 if TYPE_CHECKING:
     import optuna
-    import pandas as pd
 
 VARIANT = "variant"
 """Parameter that chooses the toe, where there are several."""
@@ -310,27 +309,3 @@ def found_designs(search: Search, study: optuna.Study) -> list[dict[str, Any]]:
     rows = [trial.user_attrs[ROW] for trial in study.best_trials]
     first, reverse = search.objectives[0], search.directions[0] == "maximize"
     return sorted(rows, key=lambda row: row[first], reverse=reverse)
-
-
-def trial_frame(study: optuna.Study) -> pd.DataFrame:
-    """All trials: number, state, reason of failure, and what was measured.
-
-    Args:
-        study: the trials.
-
-    Returns:
-        One row a trial.
-    """
-    import pandas as pd
-
-    return pd.DataFrame(
-        [
-            {
-                "number": trial.number,
-                "state": trial.state.name.lower(),
-                "reason": trial.user_attrs.get(REASON, ""),
-                **trial.user_attrs.get(ROW, {}),
-            }
-            for trial in study.get_trials(deepcopy=False)
-        ]
-    )

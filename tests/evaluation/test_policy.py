@@ -10,11 +10,9 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.policy import (
-    Scripted,
     check_layout,
     checked_action,
     load_policy,
-    policy_name,
     standing,
 )
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
@@ -126,10 +124,9 @@ def test_nan_names_step_and_trial(make_onnx):
     assert np.all(found == 0)
 
 
-def test_a_script_starts_anew_for_each_evaluation():
-    script = Scripted(np.arange(6.0).reshape(3, 2))
-    assert [script(np.zeros((2, 1)))[0, 0] for _ in range(4)] == [0, 2, 4, 4]
-    script.reset(2)
-    assert script(np.zeros((2, 1))).tolist() == [[0, 1], [0, 1]]
-    assert policy_name(script) == "Scripted"
-    assert policy_name(standing(3)) == "policy"
+def test_a_broken_policy_is_named_with_the_folder_of_its_training(tmp_path):
+    path = tmp_path / "walk-toe-0" / "policy.onnx"
+    path.parent.mkdir()
+    path.write_bytes(b"cut off")
+    with pytest.raises(InputError, match=r"^walk-toe-0/policy\.onnx: is no whole ONNX file"):
+        load_policy(path)

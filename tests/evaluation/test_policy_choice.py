@@ -87,7 +87,13 @@ def test_a_tree_of_the_name_of_a_toe_layout_takes_no_hyperlegs_policy(tmp_path):
             "toe_passive",
             "hyperleg train --task walk --design toe_passive --out FOLDER/walk-toe_passive-0",
         ),
-        ("t_test", "mini_cheetah", "no shipped task trains one: train a task of your own"),
+        (
+            "t_test",
+            "mini_cheetah",
+            "--task t_test_any --preset walker --start FOLDER/walk_any-mini_cheetah-0 "
+            "--design mini_cheetah --out FOLDER/t_test_any-mini_cheetah-0",
+        ),
+        ("jump", "mini_cheetah", "no shipped task trains one: train a task of your own"),
     ],
 )
 def test_a_robot_without_policies_is_told_how_to_train_one(kind, design, remedy):

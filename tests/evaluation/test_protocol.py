@@ -15,8 +15,8 @@ from hyperleg_design.evaluation.protocol import (
     load_protocol,
     protocol_from_mapping,
     protocol_mapping,
-    protocol_names,
 )
+from hyperleg_design.resources import sim_names
 
 
 def test_the_shipped_walk_is_the_papers():
@@ -67,7 +67,7 @@ def test_a_users_file_is_found_beside_the_shipped(write):
         "mine.yaml", "{kind: walk, speed: 1.0, distance: 5.0, trials: 2, steady: {begin: 1.0}}"
     )
     assert load_protocol(path).steady_end == 5.0
-    assert set(protocol_names()) >= {"walk", "t_test"}
+    assert set(sim_names("protocol")) >= {"walk", "t_test"}
 
 
 @pytest.mark.parametrize(

@@ -4,12 +4,11 @@ import dataclasses
 
 import pytest
 
-from hyperleg_design.errors import InputError, OutputError
-from hyperleg_design.evaluation import statistics
+from hyperleg_design.errors import OutputError
 from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.protocol import WalkProtocol
 from hyperleg_design.evaluation.protocols.walk import measure_walk
-from hyperleg_design.evaluation.result import by_seed, evaluation_of
+from hyperleg_design.evaluation.result import evaluation_of
 from hyperleg_design.evaluation.result_tables import (
     cycle_table,
     motor_table,
@@ -57,17 +56,6 @@ def test_a_row_a_motor_of_trials_that_have_a_steady_state(evaluations):
     assert len(table) == 5 * 14
     assert table.loc[2, "motor"] == "left_hip_pitch"
     assert table.loc[2, "rms_torque"] == pytest.approx(evaluations[0].motors[0].rms_torque[2])
-
-
-def test_checkpoints_of_a_seed_are_pooled_and_unknown_seeds_stand_alone(evaluations):
-    groups = by_seed(trial_table(evaluations), "fell")
-    assert sorted(len(g) for g in groups) == [2, 2, 2, 4]
-    assert statistics.share(groups).mean == 0.5
-    times = by_seed(trial_table(evaluations), "time")
-    found = statistics.estimate(times)
-    assert (found.trials, found.missing) == (5, 5)
-    with pytest.raises(InputError, match="no_such"):
-        by_seed(trial_table(evaluations), "no_such")
 
 
 def test_letting_signals_go_changes_no_table(evaluations):

@@ -9,7 +9,7 @@ import pytest
 
 from hyperleg_design.evaluation import rollout
 from hyperleg_design.evaluation.motion.power import ledger, power_constants
-from hyperleg_design.evaluation.policy import Scripted, standing
+from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.rollout import record
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.motors import motor_arrays
@@ -125,9 +125,22 @@ def test_a_diverged_trial_is_reported_with_its_state(environment, monkeypatch):
 
 
 def test_a_policy_is_told_when_trials_begin(environment):
-    script = Scripted(np.zeros((5, 14)), step=4)
-    record(script, environment(), 0.2)
-    assert script.step == 10
+    class Told:
+        """Policy that notes how many trials it was told of before each first step."""
+
+        began = ()
+
+        def reset(self, trials):
+            self.began += (trials,)
+
+        def __call__(self, observation):
+            assert self.began
+            return np.zeros((len(observation), 14))
+
+    policy = Told()
+    record(policy, environment(), 0.2)
+    record(policy, environment(2), 0.2)
+    assert policy.began == (3, 2)
 
 
 FALLS = Start(tilt=0.5, joint_position=0.05)

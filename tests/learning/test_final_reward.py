@@ -7,11 +7,11 @@ import copy
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.learning.final_reward import final_rewards, final_share, settled_after
+from hyperleg_design.learning.final_reward import final_share, settled_after
 from hyperleg_design.learning.preset_file import load_preset, preset_from_mapping
 from hyperleg_design.learning.schedule import Schedule
 from hyperleg_design.simulation.environment import Environment
-from hyperleg_design.simulation.tasks import load_task
+from hyperleg_design.simulation.tasks import Reward, load_task
 
 from .conftest import tiny_mapping
 
@@ -55,6 +55,31 @@ def test_when_nothing_changes_any_more(entries, settled):
     assert settled_after(parts) == settled
     total = sum(stage.steps for stage in parts)
     assert final_share(parts) == pytest.approx(max(0.0, 1 - settled / total))
+
+
+def final_rewards(preset, task):
+    """Reward terms that count at the end of a training; those of weight zero are left out."""
+    rewards = {
+        name: (reward.weight, dict(reward.parameters)) for name, reward in task.rewards.items()
+    }
+    for stage in preset.stages(task.name):
+        changes = [
+            (name, key, value)
+            for name, given in stage.rewards.items()
+            for key, value in given.items()
+        ]
+        changes += [
+            (ramp.target[1], ramp.target[2], ramp.high)
+            for ramp in stage.ramps
+            if ramp.target[0] == "rewards"
+        ]
+        for name, key, value in changes:
+            parameters = rewards[name][1]
+            if key == "weight":
+                rewards[name] = (value, parameters)
+            else:
+                parameters[key] = value
+    return {name: Reward(weight, given) for name, (weight, given) in rewards.items() if weight}
 
 
 def test_a_preset_that_keeps_its_helpers_too_long_is_refused():

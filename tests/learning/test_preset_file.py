@@ -3,14 +3,15 @@ from __future__ import annotations
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.learning.preset_file import load_preset, preset_from_mapping, preset_names
+from hyperleg_design.learning.preset_file import load_preset, preset_from_mapping
+from hyperleg_design.resources import sim_names
 
 from .conftest import tiny_mapping
 
 
 def test_shipped_presets_are_read() -> None:
-    assert {"laptop", "paper"} <= set(preset_names())
-    for name in preset_names():
+    assert {"laptop", "paper"} <= set(sim_names("preset"))
+    for name in sim_names("preset"):
         assert load_preset(name).name == name
 
 

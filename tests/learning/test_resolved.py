@@ -7,11 +7,12 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning.preset_file import load_preset, preset_from_mapping
 from hyperleg_design.learning.resolved import preset_mapping, task_mapping
+from hyperleg_design.resources import sim_names
 from hyperleg_design.simulation.design_spread import load_design_spread
-from hyperleg_design.simulation.tasks import load_task, task_from_mapping, task_names
+from hyperleg_design.simulation.tasks import load_task, task_from_mapping
 
 
-@pytest.mark.parametrize("name", task_names())
+@pytest.mark.parametrize("name", sim_names("task"))
 def test_a_task_comes_back_from_json(name: str) -> None:
     mapping = json.loads(json.dumps(task_mapping(load_task(name))))
     again = task_from_mapping(mapping, "json")

@@ -118,6 +118,7 @@ def test_an_mjcf_is_read_as_mujoco_reads_it(write):
         ('upper="2"', 'upper="90"', "degrees"),
         ('<child link="hand"/>', '<child link="upper-arm"/>', "arm.urdf"),
         ("<robot", "<machine", "arm.urdf"),
+        (URDF, '<sdf version="1.6"><model name="a"/></sdf>', "is SDF, which is not read"),
     ],
 )
 def test_what_looks_wrong_is_refused(write, old, new, words):

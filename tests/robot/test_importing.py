@@ -159,6 +159,7 @@ def test_broken_files_are_one_clear_error_and_nothing_is_written(case, tmp_path,
     [
         ({"actuators": {"hip": LEG["hip"]}}, ["joints.knee", "no motor"]),
         ({"actuators": LEG, "lock": ["elbow"]}, ["lock.elbow", "no such moving joint"]),
+        ({"actuators": LEG, "joints": {"elbow": {}}}, ["joints.elbow", "no such joint"]),
         ({"actuators": LEG, "lock": "hip"}, ["lock = 'hip'", "expects a list"]),
         ({"actuators": {"*": "RI70"}}, ["actuators.* = 'RI70'", "{motor: RI70, gear: 9}"]),
         ({"actuators": LEG, "joints": {"hip": 50}}, ["joints.hip = 50", "{stiffness: 50}"]),

@@ -1,8 +1,11 @@
+import re
+
 import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.design_observation import DesignRanges, Range, design_ranges
 
 RANGES = DesignRanges(
@@ -54,9 +57,7 @@ def test_ranges_survive_as_plain_values():
     [
         None,
         {},
-        {"toe.masss": {"low": 0, "high": 1}},
-        {"toe.com": {"low": 0, "high": 1}},
-        {"electrical.constants": {"low": 0, "high": 1}},
+        {3: {"low": 0, "high": 1}},
         {"toe.mass": [0, 1]},
         {"toe.mass": {"low": 0}},
         {"toe.mass": {"low": 0, "high": 1, "steps": 3}},
@@ -69,3 +70,36 @@ def test_ranges_survive_as_plain_values():
 def test_bad_ranges_are_one_clear_error(data):
     with pytest.raises(InputError):
         design_ranges(data, "file")
+
+
+@pytest.mark.parametrize(
+    ("robot", "path", "words"),
+    [
+        ("toe", "toe.masss", "of toe: no such field; did you mean toe.mass?"),
+        ("toe", "toe.com", "single number"),
+        ("toe", "electrical.constants", "single number"),
+        ("toe", "links.trunk.mass", "of toe: no such field"),
+        ("mini_cheetah", "links.trunk.mas", "did you mean links.trunk.mass?"),
+        ("mini_cheetah", "toe.mass", "of mini_cheetah: no such field"),
+    ],
+)
+def test_a_range_is_one_of_a_single_number_of_the_robot(robot, path, words):
+    ranges = design_ranges({path: {"low": 0, "high": 1}, "no.such": {"low": 0, "high": 1}}, "file")
+    with pytest.raises(InputError, match=re.escape(words)) as error:
+        DesignRanges({path: ranges.ranges[path]}).check_leaves(load_robot(robot), "file")
+    assert error.value.field == path
+    if "no such" in words:
+        with pytest.raises(InputError, match=rf"nor has {robot} no\.such"):
+            ranges.check_leaves(load_robot(robot), "file")
+
+
+def test_a_robot_that_writes_its_tree_out_is_drawn_over_its_own_leaves():
+    robot = load_robot("mini_cheetah")
+    ranges = DesignRanges(
+        {"links.trunk.mass": Range(3.0, 3.6), "actuators.knee.gear": Range(4, 9, log=True)}
+    )
+    ranges.check_leaves(robot, "file")
+    drawn = ranges.draw(50, np.random.default_rng(0))
+    batch = robot.with_values(drawn)
+    assert np.abs(ranges.numbers(batch)).max() <= 1
+    np.testing.assert_array_equal(batch["links.trunk.mass"], drawn["links.trunk.mass"])

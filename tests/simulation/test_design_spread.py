@@ -5,7 +5,9 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.design_spread import design_spread, load_design_spread
+from hyperleg_design.simulation.settings import Physics
 
 DATA = {"pool": 6, "held_out": 3, "ranges": {"toe.mass": {"low": 0.05, "high": 1.0, "log": True}}}
 
@@ -43,7 +45,7 @@ def test_what_is_written_down_is_what_was_read() -> None:
         ({"pool": True}, "pool"),
         ({"seed": 1000}, "held_out_seed"),
         ({"ranges": {}}, ""),
-        ({"ranges": {"toe.nose": {"low": 0, "high": 1}}}, "toe.nose"),
+        ({"ranges": {"toe.mass": {"low": 0}}}, "toe.mass"),
     ],
 )
 def test_bad_input_names_the_field(change: dict, field: str) -> None:
@@ -56,3 +58,21 @@ def test_ranges_that_give_no_robots_are_refused() -> None:
     data = {**DATA, "ranges": {"thigh.length": {"low": -2.0, "high": -1.0}}}
     with pytest.raises(InputError, match="narrow the ranges"):
         design_spread(data, "file").designs(load_design("toe"))
+
+
+def test_leaves_that_a_robot_lacks_or_that_change_nothing_are_named() -> None:
+    ranges = {
+        "toe.mass": {"low": 0.05, "high": 1.0},
+        "joints.toe.stiffness": {"low": 4.0, "high": 60.0},
+        "actuators.toe.derate": {"low": 0.6, "high": 1.0},
+        "actuators.knee.derate": {"low": 0.6, "high": 1.0},
+        "joints.knee.coulomb": {"low": 0.6, "high": 1.0},
+    }
+    spread = design_spread({**DATA, "ranges": ranges}, "file")
+    spread.check_robot(load_design("toe"), Physics())
+    for use in (spread.held_out_designs, lambda robot: spread.check_robot(robot, Physics())):
+        with pytest.raises(InputError, match=r"toe\.mass: of mini_cheetah: no such field"):
+            use(load_robot("mini_cheetah"))
+    for variant in ("toe_locked", "toe_removed"):
+        with pytest.raises(InputError, match=f"of {variant}; leave out joints.toe.stiffness, act"):
+            spread.check_robot(load_design(variant), Physics())

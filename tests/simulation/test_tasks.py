@@ -5,10 +5,11 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning.resolved import task_mapping
+from hyperleg_design.resources import sim_names
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.layout import layout_of
-from hyperleg_design.simulation.tasks import load_task, task_from_mapping, task_names
+from hyperleg_design.simulation.tasks import load_task, task_from_mapping
 
 PLAIN = {
     "name": "mine",
@@ -19,8 +20,8 @@ PLAIN = {
 
 
 def test_shipped_tasks_read():
-    assert {"goal", "goal_paper", "walk", "walk_free", "walk_paper"} <= set(task_names())
-    for name in task_names():
+    assert {"goal", "goal_paper", "walk", "walk_free", "walk_paper"} <= set(sim_names("task"))
+    for name in sim_names("task"):
         assert load_task(name).name == name
 
 
@@ -48,7 +49,7 @@ def test_paper_presets_are_table_ii():
         assert task.thermal.time_constant == 3.0
 
 
-@pytest.mark.parametrize("name", task_names())
+@pytest.mark.parametrize("name", sim_names("task"))
 def test_every_task_keeps_joints_off_their_stops(name):
     assert load_task(name).rewards["joint_limits"].weight < 0
 
@@ -145,9 +146,10 @@ def test_starts_in_mid_stride_need_a_humans_joints():
     task.check_robot(layout_of(load_robot("parallel_ankle")), "parallel_ankle")
 
 
+@pytest.mark.parametrize("task", ["walk_any", "t_test_any"])
 @pytest.mark.parametrize("name", ["hyperleg", "mini_cheetah", "parallel_ankle"])
-def test_the_walk_for_any_robot_fits_every_walker(name):
-    environment = Environment(load_robot(name), load_task("walk_any"), simulations=2, seed=1)
+def test_the_tasks_for_any_robot_fit_every_walker(name, task):
+    environment = Environment(load_robot(name), load_task(task), simulations=2, seed=1)
     environment.reset()
     for _ in range(10):
         step = environment.step(np.zeros((2, environment.action_size)))

@@ -7,13 +7,12 @@ from hypothesis.extra.numpy import arrays
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.sizing.energy import (
     cost_of_transport,
-    design_ledger,
     energy_ledger,
     joint_power,
-    power_cost_of_transport,
 )
 
 SAMPLES = arrays(float, (5, 3), elements=st.floats(-1e3, 1e3))
@@ -76,29 +75,12 @@ def test_joint_powers_sum_to_the_motors(seed, variant, posture):
     rng = np.random.default_rng(seed)
     motor_torque = rng.normal(size=(40, matrix.shape[1]))
     joint_velocity = 5 * rng.normal(size=(40, matrix.shape[0]))
-    ledger = design_ledger(
-        design, motor_torque, transmission.motor_velocity(matrix, joint_velocity), 0.005
-    )
+    constants = motor_arrays(design).power_constant[: matrix.shape[1]]
+    velocity = transmission.motor_velocity(matrix, joint_velocity)
+    ledger = energy_ledger(motor_torque, velocity, 0.005, constants)
     joints = joint_power(transmission.joint_torque(matrix, motor_torque), joint_velocity)
     np.testing.assert_allclose(joints.sum(-1), ledger.mechanical.sum(-1), atol=1e-9)
     assert ledger.joule[0, 4] == pytest.approx(124.57 * motor_torque[0, 4] ** 2, rel=2e-3)
-
-
-def test_batch_of_designs_equals_each():
-    values = {
-        "actuators.knee.motor": np.array(["RI70", "RI60", "U10"]),
-        "electrical.efficiency_out": np.array([0.9, 0.8, 1.0]),
-        "electrical.efficiency_regen": np.array([0.8, 0.0, 0.5]),
-    }
-    batch = load_design("hyperleg").with_values(values)
-    rng = np.random.default_rng(2)
-    torque, velocity = rng.normal(size=(20, 7)), 80 * rng.normal(size=(20, 7))
-    together = design_ledger(batch, torque, velocity, 0.01)
-    assert together.battery.shape == (3, 20, 7)
-    for i in range(3):
-        alone = design_ledger(batch.take(i), torque, velocity, 0.01)
-        for part in ("joule", "mechanical", "driver_loss", "battery"):
-            np.testing.assert_allclose(getattr(together, part)[i], getattr(alone, part))
 
 
 def test_table_three_adds_up_on_the_motor_side():
@@ -111,10 +93,10 @@ def test_table_three_adds_up_on_the_motor_side():
 
 
 def test_costs_of_transport_of_the_paper_at_its_two_speeds():
+    # energy in a second, and over 20 m
     np.testing.assert_allclose(
-        power_cost_of_transport([260.2, 313.0], 32.0, 1.33), [0.623, 0.750], atol=5e-4
+        cost_of_transport([260.2, 313.0], 32.0, 1.33), [0.623, 0.750], atol=5e-4
     )
-    # energy over 20 m: power times time
     np.testing.assert_allclose(
         cost_of_transport(np.array([260.2 * 15.96, 313.0 * 16.13]), 32.0, 20.0),
         [0.661, 0.804],
@@ -156,7 +138,7 @@ def test_no_cost_without_transport():
             cost_of_transport(100.0, 32.0, bad)
     with pytest.raises(InputError, match="mass"):
         cost_of_transport(100.0, 0.0, 1.0)
-    with pytest.raises(InputError, match="speed"):
-        power_cost_of_transport(100.0, 32.0, 0.0)
+    with pytest.raises(InputError, match="distance"):
+        cost_of_transport(100.0, 32.0, 0.0)
     with pytest.raises(InputError, match="joint_velocity"):
         joint_power(np.zeros((3, 7)), np.zeros((3, 6)))

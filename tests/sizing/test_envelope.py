@@ -5,12 +5,8 @@ from hypothesis import strategies as st
 
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.sizing.envelope import (
-    BRAKING,
-    DRIVING,
-    IDLE,
     clip_torque,
     motor_envelope,
-    quadrant,
     torque_limits,
 )
 
@@ -84,13 +80,6 @@ def test_clip_is_the_dc_motor_clip_of_the_simulator(envelope, speed, torque):
     clipped = clip_torque(envelope, torque, speed)
     np.testing.assert_allclose(clipped, expected, rtol=1e-9, atol=1e-9)
     np.testing.assert_array_equal(clip_torque(envelope, clipped, speed), clipped)
-
-
-def test_quadrants_have_the_sign_of_power():
-    np.testing.assert_array_equal(
-        quadrant(np.array([1.0, -1.0, 1.0, -1.0, 0.0]), np.array([2.0, -2.0, -2.0, 2.0, 3.0])),
-        [DRIVING, DRIVING, BRAKING, BRAKING, IDLE],
-    )
 
 
 def test_bus_voltage_moves_the_line_and_not_the_peak(envelope):

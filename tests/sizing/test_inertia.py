@@ -3,13 +3,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hyperleg_design.errors import InputError
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.sizing.inertia import (
-    centroidal_inertia,
-    com_height,
     leg_inertia,
     rotor_swing_inertia,
 )
@@ -41,9 +38,6 @@ def test_leg_is_pinocchios(random_designs, data):
 
     floating = rigid_body_model(design)
     assert leg.total_mass == pytest.approx(pin.computeTotalMass(floating.model), rel=1e-9)
-    assert com_height(design) == pytest.approx(
-        floating.center_of_mass(floating.neutral())[2], rel=1e-9
-    )
 
 
 def test_paper_masses():
@@ -93,14 +87,13 @@ def test_batch_equals_each_design():
         "actuators.hip_pitch.gear": np.array([10.0, 20.0, 30.0]),
     }
     batch = load_design("hyperleg").with_values(values)
-    together, rotors, height = leg_inertia(batch), rotor_swing_inertia(batch), com_height(batch)
+    together, rotors = leg_inertia(batch), rotor_swing_inertia(batch)
     for i in range(3):
         alone = leg_inertia(batch.take(i))
         for name, value in vars(alone).items():
             assert getattr(together, name).shape == (3,)
             assert getattr(together, name)[i] == pytest.approx(value, rel=1e-12)
         assert rotors[i] == pytest.approx(rotor_swing_inertia(batch.take(i)))
-        assert height[i] == pytest.approx(com_height(batch.take(i)))
         assert together.gyration_over_length[i] == pytest.approx(alone.gyration_over_length)
 
 
@@ -127,32 +120,3 @@ def test_measures_without_dimension_do_not_know_the_scale_of_mass():
     ):
         assert getattr(heavier, name) == pytest.approx(getattr(leg, name))
     assert heavier.swing_inertia == pytest.approx(1.5 * leg.swing_inertia)
-
-
-def test_centroidal_inertia_is_a_bodys_and_turns_with_the_base():
-    design = load_design("hyperleg")
-    straight = centroidal_inertia(design)
-    principal = np.linalg.eigvalsh(straight)
-    assert principal[0] > 0
-    assert principal[2] <= principal[0] + principal[1]
-    # parallel axes: two legs with the pelvis over and between them
-    body = rigid_body_model(design)
-    matrix = body.mass_matrix(body.neutral())[:6, :6]
-    offset = matrix[:3, 3:] / matrix[0, 0]
-    np.testing.assert_allclose(
-        straight, matrix[3:, 3:] - matrix[0, 0] * offset.T @ offset, atol=1e-9
-    )
-    turned = body.neutral()
-    turned[3:7] = [0.0, 0.0, np.sin(0.4), np.cos(0.4)]
-    np.testing.assert_allclose(centroidal_inertia(design, turned), straight, atol=1e-12)
-    bent = body.neutral()
-    bent[7 + 3] = 1.5
-    assert centroidal_inertia(design, bent)[1, 1] < straight[1, 1]
-
-
-def test_bad_input_is_refused():
-    design = load_design("hyperleg")
-    with pytest.raises(InputError, match="batch"):
-        centroidal_inertia(design.with_values({"toe.mass": np.array([0.2, 0.3])}))
-    with pytest.raises(InputError, match="configuration"):
-        centroidal_inertia(design, np.zeros(5))

@@ -10,7 +10,6 @@ from hyperleg_design.sizing.thermal import (
     moving_average,
     rms_torque,
     thermal_use,
-    time_to_limit,
 )
 
 RATED = np.array([1.76, 0.94, 0.57])
@@ -82,25 +81,6 @@ def test_alternating_torque_heats_and_the_printed_formula_misses_it():
     assert np.max(use.square_of_ema) < 1e-5
 
 
-@pytest.mark.parametrize("reading", READINGS)
-def test_time_to_limit_is_when_the_average_gets_there(reading):
-    torque = np.array([2.68, 1.2, 0.95])
-    found = time_to_limit(torque, 0.94, reading=reading)
-    for value, time in zip(torque, found, strict=True):
-        held = np.full((1, 1), value)
-        use = thermal_use(held, [0.94], float(time))
-        assert use.peak(reading)[0] == pytest.approx(1, rel=1e-9)
-    assert time_to_limit(0.94, 0.94, reading=reading) == np.inf
-    assert time_to_limit(0.0, 0.94, reading=reading) == np.inf
-    assert time_to_limit(-2.0, 0.94, reading=reading) == time_to_limit(2.0, 0.94, reading=reading)
-
-
-def test_knee_motor_at_peak_torque_lasts_under_half_a_second():
-    # (2.68 / 0.94)^2 = 8.13: T ln(8.13 / 7.13)
-    assert time_to_limit(2.68, 0.94) == pytest.approx(3 * np.log(8.1286 / 7.1286), rel=1e-4)
-    assert time_to_limit(2.68, 0.94) < 0.5
-
-
 def test_batches_pass_through():
     torque = np.random.default_rng(3).normal(size=(4, 30, 3))
     rated = np.random.default_rng(4).uniform(0.5, 2, (4, 3))
@@ -121,7 +101,6 @@ def test_bad_input_is_refused():
         (lambda: thermal_use(np.full((4, 3), np.inf), RATED, 0.01), "motor_torque"),
         (lambda: moving_average(np.zeros((0, 3)), 0.01), "samples"),
         (lambda: thermal_use(good, RATED, 0.01).peak("mean"), "reading"),
-        (lambda: time_to_limit(1.0, 1.0, limit=0.0), "limit"),
     ):
         with pytest.raises(InputError) as caught:
             call()

@@ -6,6 +6,7 @@ import socket
 import subprocess
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from hyperleg_design.errors import InputError, OutputError
@@ -14,7 +15,7 @@ from hyperleg_design.report.sweep.search_text import final_text
 from hyperleg_design.sweep import search as searching
 from hyperleg_design.sweep.finalists import run_finalists
 from hyperleg_design.sweep.measuring import measures
-from hyperleg_design.sweep.search import found_designs, run_search, search_of, trial_frame
+from hyperleg_design.sweep.search import found_designs, run_search, search_of
 from hyperleg_design.sweep.space import sweep_from_mapping
 from hyperleg_design.sweep.trials.trial_plan import plan
 
@@ -38,6 +39,21 @@ SPACE = {
 def small(**changes):
     sweep = sweep_from_mapping(SPACE | changes)
     return search_of(sweep, plan(sweep, []), constraints=["push_off_use<=1.5"])
+
+
+def trial_frame(study):
+    """A row for each trial: number, state, reason of failure, and what was measured."""
+    return pd.DataFrame(
+        [
+            {
+                "number": trial.number,
+                "state": trial.state.name.lower(),
+                "reason": trial.user_attrs.get(searching.REASON, ""),
+                **trial.user_attrs.get(searching.ROW, {}),
+            }
+            for trial in study.get_trials(deepcopy=False)
+        ]
+    )
 
 
 def test_the_front_holds_the_constraints_and_nothing_beats_it(tmp_path):

@@ -28,6 +28,8 @@ FREE_RANGE = 1.0
 """Excursion to either side of joints without limits [rad]; assumed."""
 LARGEST = 0.8
 """Excursion to either side that no motion needs to exceed [rad]."""
+NEARER = 0.7 ** np.arange(8)
+"""Shares of `LARGEST` tried until the motors hold the posture between."""
 SPEED_SHARE, FASTEST = 0.6, 6.0
 """Of the motors' no-load speed; and fastest joint [rad/s], for robots whose file gives no speed
 too; assumed."""
@@ -98,6 +100,9 @@ class Use:
 def room_of(subject: Subject) -> Room:
     """Compute the room of a robot's joints around a posture with freedom to both sides.
 
+    That posture comes as near to the default one as leaves each joint `LARGEST` to both sides, or
+    less where gravity takes more than `TORQUE_SHARE` of what the motors hold for ever.
+
     Args:
         subject: the robot.
 
@@ -105,7 +110,8 @@ def room_of(subject: Subject) -> Room:
         The room.
 
     Raises:
-        InfeasibleError: a joint that has no range to move in.
+        InfeasibleError: a joint that has no range to move in, or whose friction alone is more than
+            its motors may give.
     """
     low, high = subject.position_low.copy(), subject.position_high.copy()
     default = np.clip(subject.default, low, high)
@@ -123,9 +129,21 @@ def room_of(subject: Subject) -> Room:
             f"{subject.name}: joint {joint} has no range to move in; give its limits in the "
             f"robot's file"
         )
-    half = np.minimum((high - low) / 2, LARGEST)
-    centre = np.clip(default, low + half, high - half)
     strength = joint_strength(subject)
+    stuck = np.flatnonzero(~subject.passive & (subject.coulomb > TORQUE_SHARE * strength))
+    if len(stuck):
+        named = ", ".join(
+            f"{subject.joints[j]} ({subject.coulomb[j]:.3g} of {strength[j]:.3g} Nm)" for j in stuck
+        )
+        raise InfeasibleError(
+            f"{subject.name}: friction takes more than {100 * TORQUE_SHARE:g} % of the torque of "
+            f"{named}, so no motion fits; correct friction or effort, or make these joints fixed"
+        )
+    for size in LARGEST * NEARER:
+        half = np.minimum((high - low) / 2, size)
+        centre = np.clip(default, low + half, high - half)
+        if holding_share(subject, centre) <= TORQUE_SHARE:
+            break
     inertia = np.maximum(joint_inertia(subject) + np.diag(subject.armature), 1e-9)
     hard = np.minimum(ACCELERATION_SHARE * strength / inertia, HARDEST)
     stiffness = subject.gains[:, 0]
@@ -136,6 +154,22 @@ def room_of(subject: Subject) -> Room:
         np.inf,
     )
     return Room(centre, low, high, _speeds(subject), np.minimum(hard, soft))
+
+
+def holding_share(subject: Subject, posture: np.ndarray) -> float:
+    """Compute how much of the torque that motors give for ever gravity asks of the worst of them.
+
+    Args:
+        subject: the robot, its base fixed.
+        posture: of its joints [rad], `(n,)`.
+
+    Returns:
+        The share [-].
+    """
+    still = np.zeros((1, len(posture)))
+    needed = rigid.inverse_dynamics(subject, posture[None], still, still)
+    torque = np.where(subject.passive, 0.0, needed) @ subject.motor_from_joint.T
+    return float((np.abs(torque) / rated_torque(subject)).max())
 
 
 def _speeds(subject: Subject) -> np.ndarray:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from hyperleg_design.evaluation.evaluate import evaluate, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
-from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, load_protocol
-from hyperleg_design.report.pictures.motion import Motion, t_test_motion, walk_motion
+from hyperleg_design.evaluation.protocol import Protocol, load_protocol
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.policy import Policy
@@ -50,19 +49,3 @@ def replay(
     )
     single = run.changed(trials=1) if seed is None else run.changed(trials=1, seed=seed)
     return evaluate(chosen, single, design=design, task=task, threads=1)
-
-
-def motion_of(found: Evaluation, **options: Any) -> Motion:
-    """Prepare the animation of a replay: a walk from aside, a T-test from above.
-
-    Args:
-        found: of `replay`.
-        options: of `motion.walk_motion` or `motion.t_test_motion`.
-
-    Returns:
-        The motion to draw.
-    """
-    trial = found.trials[0]
-    if isinstance(found.protocol, TTestProtocol):
-        return t_test_motion(trial, found.protocol, **options)
-    return walk_motion(trial, **options)

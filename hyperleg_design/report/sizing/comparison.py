@@ -329,8 +329,15 @@ UNITS = {
 """Unit of each measure of `compare`, by the beginning of its name; the others have none."""
 
 
+JOINTWISE = ("max_joint_torque", "torque_alone", "single_joint_speed")
+"""Measures of `compare` with a number for each joint."""
+
+
 def compare_text(measures: dict[str, Any]) -> str:
     """Write a comparison for a terminal, with a row for each measure and a column for each design.
+
+    Joints that only some of the designs have follow in a table of their own, so that robots of
+    different kinds leave no empty cells.
 
     Args:
         measures: of each design, by its name.
@@ -338,14 +345,26 @@ def compare_text(measures: dict[str, Any]) -> str:
     Returns:
         The text.
     """
+    common = set.intersection(*(set(entry[JOINTWISE[0]]) for entry in measures.values()))
     rows: dict[str, list[object]] = {}
-    for name in measures:
-        for key, value in _flat(measures[name]).items():
-            rows.setdefault(key, [""] * len(measures))[list(measures).index(name)] = value
+    others: dict[str, list[list[object]]] = {}
+    for index, (name, entry) in enumerate(measures.items()):
+        for key, value in _flat(entry).items():
+            group, _, joint = key.partition(".")
+            if group not in JOINTWISE or joint in common:
+                rows.setdefault(key, [""] * len(measures))[index] = value
+        for joint in entry[JOINTWISE[0]]:
+            if joint not in common:
+                own = [joint, name, *(entry[group][joint] for group in JOINTWISE)]
+                others.setdefault(joint, []).append(own)
     groups = list(dict.fromkeys(key.split(".")[0] for key in rows))
     ordered = sorted(rows, key=lambda key: groups.index(key.split(".")[0]))
-    cells = [[key, _unit(key), *rows[key]] for key in ordered]
-    return table(["measure", "unit", *measures], cells)
+    text = table(["measure", "unit", *measures], [[key, _unit(key), *rows[key]] for key in ordered])
+    if not others:
+        return text
+    heads = ["joint", "design", *(f"{group} [{UNITS[group]}]" for group in JOINTWISE)]
+    apart = table(heads, [row for some in others.values() for row in some])
+    return f"{text}\n\njoints that some of the designs lack:\n{apart}"
 
 
 def _unit(key: str) -> str:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, load_protocol
@@ -19,6 +20,7 @@ from hyperleg_design.evaluation.robustness import CONDITIONS, robustness
 from hyperleg_design.evaluation.shipped import (
     Shipped,
     check_different,
+    shipped_folder,
     shipped_policies,
     trainings_text,
 )
@@ -299,13 +301,31 @@ def coverage(folder: str | Path | None = None) -> dict[str, list[str]]:
         Names of trainings under `evaluated` and `missing`.
 
     Raises:
-        InputError: no such folder.
+        InputError: as `check_policies`.
     """
+    check_policies(folder)
     policies = _compared(folder, late=False)
     return {
         "evaluated": [policy.training for policy in policies],
         "missing": missing_trainings(policies),
     }
+
+
+def check_policies(folder: str | Path | None = None) -> None:
+    """Check that a folder of trainings holds policies that the paper's experiment compares.
+
+    Args:
+        folder: of trainings; the shipped policies by default.
+
+    Raises:
+        InputError: no such folder, or none of these policies.
+    """
+    if not (_compared(folder, late=False) or _rewarded(folder)):
+        remedy = (
+            "holds no finished training of the study; expects folders such as walk_upright-toe-1, "
+            "which `hyperleg campaign run campaign` makes, or no --policies for the shipped ones"
+        )
+        raise InputError("policies", "", str(folder or shipped_folder()), remedy)
 
 
 def coverage_text(trainings: Mapping[str, Sequence[str]]) -> str:

@@ -15,7 +15,7 @@ from hyperleg_design.report.drawer import FIGURES, Drawer
 from hyperleg_design.report.page import Page, Section
 from hyperleg_design.report.text import table
 from hyperleg_design.report.walks.beside_paper import row_facts, rows_beside_paper
-from hyperleg_design.report.walks.evaluated import Evaluated, evaluate_shipped
+from hyperleg_design.report.walks.evaluated import Evaluated, check_policies, evaluate_shipped
 from hyperleg_design.report.walks.planned_part import planned_rows, row_numbers
 from hyperleg_design.report.walks.policy_parts import parts
 from hyperleg_design.report.walks.rewards_part import reward_rows
@@ -24,10 +24,6 @@ from hyperleg_design.writing import check_output_folder, output_folder, write_js
 TABLES, PLANNED, BY_REWARD, RESULTS = "tables.json", "planned.json", "rewards.json", "evaluation"
 """Rows beside the paper, outcomes of the analysis plan, both arms under several rewards, and the
 trials' tables, beside the page."""
-NO_POLICY = (
-    "The folder of trainings holds no finished one, so walks and T-tests are not shown; "
-    "hyperleg campaign run trains them."
-)
 LEAD = (
     "Walking and the T-test with and without the active toe: trained policies, evaluated without "
     "assist, beside the paper's Tables III "
@@ -58,22 +54,19 @@ def run_paper(
         The page.
 
     Raises:
-        InputError: no such folder, or a policy that cannot be used.
+        InputError: no such folder, one without a policy to compare, or a policy that cannot be
+            used.
         OutputError: the folder is not ours, or cannot be written.
     """
     check_output_folder(out)
+    check_policies(policies)
     evaluated = evaluate_with_bar(policies, workers=workers, progress=progress, **options)
-    any_policy = bool(evaluated.policies) or evaluated.rewards is not None
     with output_folder(out) as folder:
-        sections = (
-            [Section(part.title, part.content) for part in policy_parts(evaluated, folder)]
-            if any_policy
-            else []
-        )
+        sections = [Section(part.title, part.content) for part in policy_parts(evaluated, folder)]
         commit = provenance.git_commit()
         page = Page(
             title="Active toes: the paper's experiment, run again",
-            lead=LEAD if any_policy else NO_POLICY,
+            lead=LEAD,
             sections=sections,
             provenance={
                 **provenance.versions(),

@@ -18,6 +18,8 @@ from hyperleg_design.report.walks.evaluated import REWARDS
 from hyperleg_design.simulation.tasks import load_task
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import pandas as pd
 
 MEASURES = (
@@ -49,6 +51,28 @@ def reward_rows(trials: pd.DataFrame) -> dict[str, list[PlannedRow]]:
     }
 
 
+def reward_names(deviations: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
+    """Name rewards by the terms that set them apart.
+
+    Args:
+        deviations: by reward, each term that is not the paper's, with a description, as
+            `Task.deviations` gives them.
+
+    Returns:
+        A name of each; `the paper's` for one that has only terms which all of them have.
+    """
+    common = set.intersection(*(set(terms) for terms in deviations.values()))
+    names = {}
+    for key, terms in deviations.items():
+        apart = [
+            f"another weight of {term}" if text.startswith("weight ") else term.replace("_", " ")
+            for term, text in terms.items()
+            if term not in common
+        ]
+        names[key] = f"with {' and '.join(apart)}" if apart else "the paper's"
+    return names
+
+
 def rewards(trials: pd.DataFrame) -> Part:
     """Tabulate both arms under each reward.
 
@@ -59,9 +83,11 @@ def rewards(trials: pd.DataFrame) -> Part:
         The part.
     """
     plan = load_plan()
+    deviations = {g: load_task(task).deviations for g, task in compared_groups(REWARDS).items()}
+    names = reward_names(deviations)
     rows = [
         [
-            group.replace("_", " "),
+            names[group],
             row.outcome.measure.replace("_", " "),
             measure_of(row.outcome.measure).unit,
             row.active,
@@ -74,9 +100,9 @@ def rewards(trials: pd.DataFrame) -> Part:
         for row in some
     ]
     differing = [
-        [group.replace("_", " "), term.replace("_", " "), text]
-        for group, task in compared_groups(REWARDS).items()
-        for term, text in load_task(task).deviations.items()
+        [names[group], term.replace("_", " "), text]
+        for group, terms in deviations.items()
+        for term, text in terms.items()
     ]
     arms = (plan.active.replace("_", " "), plan.compared.replace("_", " "))
     head = ["reward", "measure", "unit", *arms, "change", "p", "trainings"]

@@ -52,7 +52,6 @@ def inertials(design: HyperLeg, side: float = 1.0) -> dict[str, Inertial]:
                 design.pelvis.com,
                 design.pelvis.gyration,
             ),
-            1.0,
         ),
         "hip_yaw_carrier": _declared(design.hip.yaw_carrier_mass, zero, carrier),
         "hip_roll_carrier": _declared(design.hip.roll_carrier_mass, zero, carrier),
@@ -65,7 +64,7 @@ def inertials(design: HyperLeg, side: float = 1.0) -> dict[str, Inertial]:
         body = _declared(
             getattr(table, name) - _change(table, name, 1) - carrier_mass, com, gyration
         )
-        links[name] = _with_housed(design, name, table, body, side)
+        links[name] = _with_housed(design, name, table, body)
     mirror = np.array([1.0, side, 1.0])
     links["ankle_cross"] = _declared(
         design.foot.cross_mass,
@@ -97,7 +96,7 @@ def _change(table: masses.MassTable, segment: str, legs: int) -> Any:
 
 
 def _with_housed(
-    design: HyperLeg, segment: str, table: masses.MassTable, body: Inertial, side: float
+    design: HyperLeg, segment: str, table: masses.MassTable, body: Inertial
 ) -> Inertial:
     """The body with the changes of housed actuators added as points; the same body where nothing
     changed.

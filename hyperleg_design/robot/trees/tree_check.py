@@ -96,7 +96,7 @@ def ordered(
 
 
 def _unknown_link(name: str, links: list[str]) -> str:
-    return parameters.unknown(str(name), sorted(links)).replace("such field", "such link")
+    return parameters.unknown(str(name), sorted(links), "link")
 
 
 def check_tree_design(design: TreeDesign) -> None:

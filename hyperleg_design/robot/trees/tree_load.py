@@ -212,7 +212,7 @@ def _transmission(
         given = _from_matrix(given, motors, joints, sections, where)
     for motor in given:
         if motor not in motors:
-            remedy = parameters.unknown(str(motor), motors).replace("such field", "such motor")
+            remedy = parameters.unknown(str(motor), motors, "motor")
             raise InputError(where, f"transmission.{motor}", None, remedy)
     entries: dict[str, dict[str, Any]] = {}
     for motor in motors:

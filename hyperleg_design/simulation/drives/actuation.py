@@ -274,32 +274,6 @@ def motor_friction_width(matrix: np.ndarray, width: float) -> np.ndarray:
     return np.asarray(width * np.max(np.abs(matrix), -2))
 
 
-def joule_power(power_constant: np.ndarray, torque: np.ndarray) -> np.ndarray:
-    """Compute the heat in each motor, Cp tau^2.
-
-    Args:
-        power_constant: Cp [W/Nm^2], `(..., motors)`.
-        torque: tau [Nm], `(..., motors)`.
-
-    Returns:
-        The heat [W], `(..., motors)`.
-    """
-    return power_constant * torque**2
-
-
-def mechanical_power(torque: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-    """Compute the signed mechanical power of each motor or joint.
-
-    Args:
-        torque: [Nm], `(...)`.
-        velocity: [rad/s], `(...)`.
-
-    Returns:
-        The power [W], `(...)`.
-    """
-    return torque * velocity
-
-
 def applied(matrix: np.ndarray, vector: np.ndarray) -> np.ndarray:
     """Multiply a matrix and a vector over the last axes.
 

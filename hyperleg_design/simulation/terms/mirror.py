@@ -80,23 +80,3 @@ def mirror_observation(parts: Sequence[str], layout: Layout) -> MirrorMap:
         sign.append(turned)
         start += count
     return MirrorMap(np.concatenate(index), np.concatenate(sign).astype(np.float32))
-
-
-def mirror_position(
-    qpos: np.ndarray, qvel: np.ndarray, layout: Layout
-) -> tuple[np.ndarray, np.ndarray]:
-    """Mirror MuJoCo states in the plane y = 0.
-
-    Args:
-        qpos: `(..., 7 + J)`.
-        qvel: `(..., 6 + J)`.
-        layout: of the robot.
-
-    Returns:
-        The mirrored `qpos` and `qvel`.
-    """
-    position, velocity, joints = qpos.copy(), qvel.copy(), mirror_joints(layout)
-    position[..., [1, 4, 6]] *= -1  # y; quaternion x and z
-    velocity[..., [1, 3, 5]] *= -1
-    position[..., 7:], velocity[..., 6:] = joints(qpos[..., 7:]), joints(qvel[..., 6:])
-    return position, velocity

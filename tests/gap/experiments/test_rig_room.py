@@ -4,6 +4,8 @@ import pytest
 from hyperleg_design import resources
 from hyperleg_design.errors import InfeasibleError
 from hyperleg_design.gap.experiments.rig_room import (
+    LARGEST,
+    NEARER,
     followed,
     rated_torque,
     room_of,
@@ -18,11 +20,14 @@ LIMITED = """
 <mujoco model="limited">
   <worldbody>
     <body name="arm" pos="0 0 1">
-      <joint name="swing" axis="0 1 0" range="{low} {high}" damping="0.02" armature="0.003"/>
+      <joint name="swing" axis="0 1 0" range="{low} {high}" damping="0.02" armature="0.003"
+        frictionloss="{friction}"/>
       <inertial pos="0 0 -0.1" mass="0.5" diaginertia="0.0006 0.0006 0.0001"/>
     </body>
   </worldbody>
-  <actuator><position name="servo" joint="swing" kp="6" kv="0.15" forcerange="-2 2"/></actuator>
+  <actuator>
+    <position name="servo" joint="swing" kp="6" kv="0.15" forcerange="-{peak} {peak}"/>
+  </actuator>
 </mujoco>
 """
 
@@ -32,9 +37,9 @@ def leg():
     return subject_of(load_design(resources.find("descriptions", "hyperleg")), "fixed")
 
 
-def of_text(tmp_path, low, high):
+def of_text(tmp_path, low, high, peak=2.0, friction=0.0):
     path = tmp_path / "limited.xml"
-    path.write_text(LIMITED.format(low=low, high=high))
+    path.write_text(LIMITED.format(low=low, high=high, peak=peak, friction=friction))
     return load_subject(str(path))
 
 
@@ -92,3 +97,20 @@ def test_targets_lead_by_torque_over_stiffness(tmp_path):
 def test_a_joint_without_range_is_refused(tmp_path):
     with pytest.raises(InfeasibleError, match="swing"):
         room_of(of_text(tmp_path, -1, 1))
+
+
+@pytest.mark.parametrize("peak", [2.0, 0.9, 0.7, 0.4])
+def test_motions_are_as_wide_as_the_motors_can_hold_their_centre(tmp_path, peak):
+    """The arm hangs at zero, near the lower end of its range, so a wide motion is held up."""
+    room = room_of(of_text(tmp_path, -10, 120, peak))
+    size = float(room.centre[0] - room.low[0])
+    sizes = LARGEST * NEARER
+    held = 0.8 * 0.4 * peak / (0.5 * 9.81 * 0.1)
+    allowed = [s for s in sizes if np.sin(room.low[0] + s) <= held]
+    assert size == pytest.approx(allowed[0])
+
+
+def test_a_joint_whose_friction_takes_its_torque_is_named(tmp_path):
+    room_of(of_text(tmp_path, -120, 120, friction=1.5))
+    with pytest.raises(InfeasibleError, match=r"swing \(1\.7 of 2 Nm\)"):
+        room_of(of_text(tmp_path, -120, 120, friction=1.7))

@@ -42,20 +42,29 @@ def test_compare_puts_designs_beside_each_other(design):
         found["toe_removed"]["max_joint_torque"]["knee"]
         < found["hyperleg"]["max_joint_torque"]["knee"]
     )
-    text = comparison.compare_text(found)
-    assert "max_joint_torque.toe" in text
+    text, others = comparison.compare_text(found).split("\n\n")
     assert "toe_removed" in text.splitlines()[0]
     units = {line.split()[0]: line.split()[1] for line in text.splitlines()[2:]}
     assert (units["total_mass"], units["torque_alone.knee"]) == ("kg", "Nm")
     assert units["zonotope_to_box_volume"] == "-"
+    (toe,) = (line.split() for line in others.splitlines()[3:])
+    assert toe[:2] == ["toe", "hyperleg"]
+    limits = [found["hyperleg"][name]["toe"] for name in comparison.JOINTWISE]
+    assert [float(cell) for cell in toe[2:]] == pytest.approx(limits, rel=1e-3)
 
 
-def test_rows_of_one_measure_stand_together_whatever_the_joints_are_called():
-    robots = [load_robot("teaching_leg"), load_robot("mini_cheetah")]
-    text = comparison.compare_text(comparison.compare(robots))
+def test_rows_of_one_measure_stand_together_and_no_joint_has_an_empty_cell():
+    robots = [load_robot(name) for name in ("teaching_leg", "mini_cheetah", "parallel_ankle")]
+    measures = comparison.compare(robots)
+    text, others = comparison.compare_text(measures).split("\n\n")
     groups = [line.split(".")[0] for line in text.splitlines()[2:] if "." in line.split()[0]]
     runs = [group for group, other in zip(groups, ["", *groups], strict=False) if group != other]
     assert len(runs) == len(set(runs))
+    common = {line.split()[0] for line in text.splitlines() if line.startswith("torque_alone.")}
+    assert common == {"torque_alone.knee"}
+    apart = [tuple(line.split()[:2]) for line in others.splitlines()[3:]]
+    joints = [(j, name) for name, entry in measures.items() for j in entry["torque_alone"]]
+    assert sorted(apart) == sorted(pair for pair in joints if pair[0] != "knee")
 
 
 def test_compare_keeps_two_designs_of_one_name_apart(design):

@@ -2,12 +2,11 @@ from __future__ import annotations
 
 from hyperleg_design.report.study import experiment as study_experiment
 from hyperleg_design.report.study.context import Context
-from hyperleg_design.report.walks.paper_page import NO_POLICY
 
 
 def test_without_a_policy_one_sentence_says_so(hyperleg, tmp_path):
     made = study_experiment.experiment(Context(hyperleg, {}, tmp_path, tmp_path))
-    assert list(made.section.content) == [NO_POLICY]
+    assert list(made.section.content) == [study_experiment.NO_POLICY]
     assert made.facts == ()
 
 

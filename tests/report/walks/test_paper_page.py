@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
 
 from hyperleg_design.cli import main
@@ -58,23 +56,13 @@ def test_the_tables_read_in_a_terminal(page):
     assert "-16.9 %" in text
 
 
-def test_without_policies_the_page_is_one_sentence(tmp_path, capsys):
+def test_a_folder_without_trainings_is_refused_and_nothing_written(tmp_path, capsys):
     (tmp_path / "none").mkdir()
-    assert (
-        main(
-            [
-                "paper",
-                "--policies",
-                str(tmp_path / "none"),
-                "--out",
-                str(tmp_path / "out"),
-                "--json",
-            ]
-        )
-        == 0
-    )
-    assert json.loads(capsys.readouterr().out)["tables"] == {}
-    assert "holds no finished one" in (tmp_path / "out" / "index.html").read_text()
+    arguments = ["--policies", str(tmp_path / "none"), "--out", str(tmp_path / "out")]
+    assert main(["paper", *arguments]) == 2
+    assert "none'" in (error := capsys.readouterr().err)
+    assert "holds no finished training" in error
+    assert not (tmp_path / "out").exists()
 
 
 def test_bad_folders_stop_before_any_work(tmp_path):

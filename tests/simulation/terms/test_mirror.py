@@ -9,9 +9,17 @@ from hyperleg_design.simulation.settings import Start
 from hyperleg_design.simulation.terms.mirror import (
     mirror_joints,
     mirror_observation,
-    mirror_position,
 )
 from hyperleg_design.simulation.terms.observations import PARTS, size
+
+
+def mirror_position(qpos, qvel, layout):
+    """MuJoCo states mirrored in the plane y = 0, `(..., 7 + J)` and `(..., 6 + J)`."""
+    position, velocity, joints = qpos.copy(), qvel.copy(), mirror_joints(layout)
+    position[..., [1, 4, 6]] *= -1  # y; quaternion x and z
+    velocity[..., [1, 3, 5]] *= -1
+    position[..., 7:], velocity[..., 6:] = joints(qpos[..., 7:]), joints(qvel[..., 6:])
+    return position, velocity
 
 
 @pytest.mark.parametrize("parts", [tuple(PARTS), ("proprioception",), ("clock", "waypoint")])
@@ -31,6 +39,7 @@ def test_mirroring_twice_gives_the_same(design, parts):
         ("walk_paper", "toe_removed"),
         ("walk_any", "mini_cheetah"),
         ("walk_any", "parallel_ankle"),
+        ("t_test_any", "mini_cheetah"),
     ],
 )
 def test_a_mirrored_robot_moves_as_the_mirror_image(design, make, task, variant):
@@ -39,7 +48,7 @@ def test_a_mirrored_robot_moves_as_the_mirror_image(design, make, task, variant)
     """
     environment = make(
         task,
-        robot=load_robot(variant) if task == "walk_any" else ablate(design, variant),
+        robot=load_robot(variant) if task.endswith("_any") else ablate(design, variant),
         simulations=2,
         seed=4,
         start=Start(joint_position=0.1, tilt=0.05),
@@ -86,4 +95,4 @@ def _mirror_commands(chunk):
     for name in ("last", "target", "following"):
         points = getattr(commander, name)
         points[1] = points[0] * [1, -1]
-    commander.best[1] = commander.best[0]
+    commander.best[1], commander.slower[1] = commander.best[0], commander.slower[0]
