@@ -23,6 +23,11 @@ class Parameter:
     """Usual distance from `null` on hardware: scale of the prior and of finite differences."""
     source: str
     """Where the magnitude comes from."""
+    spread: float = 0.0
+    """Usual distance of a healthy robot from `null`, the standard deviation of a nuisance parameter
+    (assumed, of the order that data sheets and drawings are wrong by); 0 of one that is none."""
+    of_strength: bool = False
+    """Whether `typical` and `spread` are over the torque that the joint or motor is made for."""
     shape: bool = False
     """Whether it only shapes the trace (a Stribeck speed, a cogging order) and means nothing while
     the size is at its null."""

@@ -56,19 +56,6 @@ def driven_motors(subject: Subject) -> tuple[str, ...]:
     return subject.motors
 
 
-def moved_joints(subject: Subject, motor: int) -> tuple[str, ...]:
-    """Joints that follow a motor.
-
-    Args:
-        subject: the robot.
-        motor: index of the motor.
-
-    Returns:
-        Their names.
-    """
-    return tuple(subject.joints[j] for j in np.flatnonzero(subject.motor_from_joint[motor]))
-
-
 def at_joint(signals: Signals, joint: int, torque: np.ndarray) -> dict[str, np.ndarray]:
     """Trace of a torque that a joint takes from its drive, beyond the model `(k, t)` [Nm].
 
@@ -103,19 +90,24 @@ def at_motor(signals: Signals, motor: int, torque: np.ndarray) -> dict[str, np.n
 
 
 def before_measurement(
-    signals: Signals, changes: Mapping[int, np.ndarray]
+    signals: Signals,
+    changes: Mapping[int, np.ndarray],
+    control: Mapping[int, np.ndarray] | None = None,
 ) -> dict[str, np.ndarray]:
-    """Trace of changes of what drives give, by place of the motor `(k, t)` [Nm]; the rule of this
-    module.
+    """Trace of changes of what drives give, by the rule of this module, and of what controllers ask
+    of them.
 
     Args:
         signals: a conditioned log, `t` ticks.
         changes: of the torque, by index of the motor `(k, t)` [Nm].
+        control: of logged commands, likewise, where the residual of the control shows them.
 
     Returns:
         The trace by name of the residual.
     """
     rows: dict[str, np.ndarray] = {}
+    for motor, share in (control or {}).items() if "control" in signals.residual else ():
+        rows.setdefault("control", _rows(share, len(signals.subject.motors)))[:, motor] = share
     for motor, change in changes.items():
         if is_measured(signals, motor):
             rows.setdefault("drive", _rows(change, len(signals.subject.motors)))[:, motor] += change

@@ -3,26 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
+from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
 from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placed import MotorHooks
 from hyperleg_design.gap.effects.placing import before_measurement, commanded, is_commanded, limited
 from hyperleg_design.gap.effects.series import lagged
 from hyperleg_design.gap.effects.usual import lateness
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
+from hyperleg_design.simulation.alteration import Limits, Tick
 
 BANDWIDTH = 10.0
 """Content of the command that tells a motor's bandwidth from delay [Hz]."""
+
+
+class _Lagging(MotorHooks):
+    """Exact for a command that is held for a simulation step."""
+
+    kept: ClassVar[tuple[str, ...]] = ("given", "begun")
+    time_constant: np.ndarray
+
+    def prepare(self) -> None:
+        super().prepare()
+        machine, lag = self.machine, self.time_constant
+        self.gain = np.where(lag > 1e-9, -np.expm1(-self.step / np.maximum(lag, 1e-9)), 1.0)
+        self.nominal = Limits(machine.no_load_speed, machine.stall_torque, machine.peak_torque)
+        self.given, self.begun = np.zeros(self.count), np.zeros(self.count)
+
+    def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
+        wanted = self.nominal.clip(command, tick.motor_velocity)[:, self.place]
+        settled = np.where(self.begun == 0, wanted, self.given)
+        self.given[:] = settled + self.gain * (wanted - settled)
+        self.begun[:] = 1.0
+        lagging = np.broadcast_to(self.gain < 1, self.given.shape)
+        command[:, self.place] = np.where(lagging, self.given, command[:, self.place])
+        return command
 
 
 class ActuatorBandwidth(MotorEffect):
@@ -46,6 +68,13 @@ class ActuatorBandwidth(MotorEffect):
             "torque loops of 15-100 Hz, 2-10 ms, on series-elastic and servo drives (assumed)",
         ),
     )
+    hooks: ClassVar[type[MotorHooks]] = _Lagging
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.command > BANDWIDTH,
+        f"commands reach past {BANDWIDTH:.0f} Hz",
+        f"commands hold nothing above {BANDWIDTH:.0f} Hz: looks like delay",
+        asked=True,
+    )
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "log torque or current": BEYOND_COMMANDS,
         "chirp past 8 Hz": frozenset({"controller_gain", "rotor_inertia", "viscous_friction"}),
@@ -62,12 +91,6 @@ class ActuatorBandwidth(MotorEffect):
         return dict.fromkeys(self.locations(subject), np.array([lateness(step)]))
 
     @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        good = f"commands reach past {BANDWIDTH:.0f} Hz"
-        lacking = f"commands hold nothing above {BANDWIDTH:.0f} Hz: looks like delay"
-        return at_drives(self.identifier, motion, motion.command > BANDWIDTH, good, lacking)
-
-    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         motor = signals.subject.motors.index(location)
         if not is_commanded(signals, motor):
@@ -77,45 +100,6 @@ class ActuatorBandwidth(MotorEffect):
         return before_measurement(signals, {motor: lagged(given, lag, signals.step) - given})
 
     @override
-    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        return LaggingTorque(location, np.asarray(values, float)[..., 0])
-
-    @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Lags of a quick, a usual and a slow drive."""
         return np.array([[0.003], [0.01], [0.03]])
-
-
-class _Lagging(Live):
-    kept: ClassVar[tuple[str, ...]] = ("given", "begun")
-
-    alteration: LaggingTorque
-
-    def prepare(self) -> None:
-        machine = self.machine
-        self.place = machine.motor(self.alteration.motor)
-        lag = np.asarray(self.alteration.time_constant, float)
-        self.gain = np.where(lag > 1e-9, -np.expm1(-self.step / np.maximum(lag, 1e-9)), 1.0)
-        self.nominal = Limits(machine.no_load_speed, machine.stall_torque, machine.peak_torque)
-        self.given, self.begun = np.zeros(self.count), np.zeros(self.count)
-
-    def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
-        wanted = self.nominal.clip(command, tick.motor_velocity)[:, self.place]
-        settled = np.where(self.begun == 0, wanted, self.given)
-        self.given[:] = settled + self.gain * (wanted - settled)
-        self.begun[:] = 1.0
-        lagging = np.broadcast_to(self.gain < 1, self.given.shape)
-        command[:, self.place] = np.where(lagging, self.given, command[:, self.place])
-        return command
-
-
-@dataclass(frozen=True, eq=False)
-class LaggingTorque(Alteration):
-    """A motor's torque follows its command with a lag; exact for a command that is held for a
-    simulation step.
-    """
-
-    live: ClassVar[type[Live] | None] = _Lagging
-    motor: str
-    time_constant: Any
-    """`()` or `(n,)` [s]."""

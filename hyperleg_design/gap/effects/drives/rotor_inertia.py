@@ -9,12 +9,11 @@ from typing import Any, ClassVar
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.kinds import MotorTorque
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import joint_inertia
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
@@ -52,6 +51,11 @@ class RotorInertia(MotorTorque):
         ),
     )
     linear: ClassVar[bool] = True
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.reversing & (motion.content > CONTENT),
+        "motion accelerates",
+        "hardly any acceleration",
+    )
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "chirp past 8 Hz": frozenset({"controller_gain", "torque_constant", "transmission_ratio"}),
         "several postures": INERTIAL,
@@ -73,13 +77,6 @@ class RotorInertia(MotorTorque):
                 ]
             )
         return spreads
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        moved = motion.reversing & (motion.content > CONTENT)
-        return at_joints(
-            self.identifier, motion, moved, "motion accelerates", "hardly any acceleration"
-        )
 
     def _torque(self, signals: Signals, motor: int, inertia: np.ndarray) -> np.ndarray:
         return inertia * (signals.acceleration @ signals.subject.joint_from_motor[:, motor])

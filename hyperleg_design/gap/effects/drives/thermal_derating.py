@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -13,11 +12,12 @@ from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import SCALING, WITH_LOAD
 from hyperleg_design.gap.effects.kinds import MotorTorque
 from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placed import MotorHooks, Placed
 from hyperleg_design.gap.effects.placing import given, machine, motor_strength
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.alteration import Alteration, Live, Tick
+from hyperleg_design.simulation.alteration import Alteration, Tick
 
 COLD = 25.0
 """Temperature at which a motor has the torque of its data sheet [degC]."""
@@ -89,11 +89,10 @@ class ThermalDerating(MotorTorque):
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        return DeratedMotor(
-            location,
-            np.asarray(values, float)[..., 0],
-            rated_torque(subject, subject.motors.index(location)),
-        )
+        """With the continuous torque of the motor."""
+        rated = rated_torque(subject, subject.motors.index(location))
+        constants = {"coefficient": np.asarray(values, float)[..., 0], "rated": rated}
+        return Placed(location, constants, live=_Derated)
 
     @override
     def torque_slope(self, signals: Signals, motor: int, joint: int) -> np.ndarray:
@@ -137,34 +136,23 @@ def rated_torque(subject: Subject, motor: int) -> float:
     return known if np.isfinite(known) else RATED_SHARE * motor_strength(subject, motor)
 
 
-class _Derated(Live):
-    kept: ClassVar[tuple[str, ...]] = ("rise",)
+class _Derated(MotorHooks):
+    """Loses torque with temperature: measured, or modelled from cold."""
 
-    alteration: DeratedMotor
+    kept: ClassVar[tuple[str, ...]] = ("rise",)
+    coefficient: np.ndarray
+    rated: float
 
     def prepare(self) -> None:
-        self.place = self.machine.motor(self.alteration.motor)
+        super().prepare()
         self.rise = np.zeros(self.count)
 
     def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
-        one = self.alteration
-        heat = RATED_RISE * (torque[:, self.place] / one.rated) ** 2
+        heat = RATED_RISE * (torque[:, self.place] / self.rated) ** 2
         rise = self.rise.copy()
         if tick.temperature is not None:
             known = tick.temperature[:, self.place] - COLD
             rise = np.where(np.isfinite(known), known, rise)
         self.rise += -np.expm1(-self.step / TIME_CONSTANT) * (heat - self.rise)
-        torque[:, self.place] *= np.clip(1 - one.coefficient * rise, 0.0, None)
+        torque[:, self.place] *= np.clip(1 - self.coefficient * rise, 0.0, None)
         return torque
-
-
-@dataclass(frozen=True, eq=False)
-class DeratedMotor(Alteration):
-    """A motor that loses torque with temperature: measured, or modelled from cold."""
-
-    live: ClassVar[type[Live] | None] = _Derated
-    motor: str
-    coefficient: Any
-    """`()` or `(n,)` [1/K]."""
-    rated: float
-    """Continuous torque [Nm]."""

@@ -20,7 +20,8 @@ from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
 
 USUAL = 0.5
-"""Usual error of how the ground gives and damps, over it."""
+"""Usual error of how the ground gives and damps, over it; no simulator has it from a
+measurement."""
 
 
 class GroundCompliance(FootEffect):
@@ -41,8 +42,8 @@ class GroundCompliance(FootEffect):
             0.1,
             20.0,
             1.0,
-            "soles and mats: 1-5 mm under body weight against a fraction of that (engineering "
-            "estimate)",
+            "soles and mats: 1-5 mm under body weight against a fraction of that (estimate)",
+            spread=USUAL,
         ),
         Parameter(
             "damping_scale",
@@ -52,16 +53,12 @@ class GroundCompliance(FootEffect):
             5.0,
             0.5,
             "of the damping ratio: rubber 0.05-0.3 against a critically damped model (estimate)",
+            spread=USUAL,
         ),
     )
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "push on the ground": FRICTION | INERTIAL | {"ground_friction"}
     }
-
-    @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Of how the ground gives and damps, which no simulator has from a measurement."""
-        return dict.fromkeys(self.locations(subject), np.array([USUAL, USUAL]))
 
     @override
     def excited(self, log: Log, motion: Motion) -> Excitation:

@@ -46,16 +46,12 @@ class GroundFriction(FootEffect):
             5.0,
             0.3,
             "rubber on dry to wet floors 0.9-0.4 (engineering tables), 30 % of a nominal 0.8",
+            spread=USUAL,
         ),
     )
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "push on the ground": FRICTION | INERTIAL | {"ground_compliance"}
     }
-
-    @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the ground's friction."""
-        return dict.fromkeys(self.locations(subject), np.array([USUAL]))
 
     @override
     def excited(self, log: Log, motion: Motion) -> Excitation:

@@ -13,8 +13,7 @@ from typing_extensions import override
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
-from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.effects.excitation import SWINGING, Need
 from hyperleg_design.gap.model.body_inertia import add_inertia
 from hyperleg_design.gap.model.mechanism import BASE
 from hyperleg_design.gap.model.subject import Subject
@@ -40,6 +39,7 @@ class InertialEffect(Effect):
     """
 
     kind: ClassVar[str] = "link"
+    needs: ClassVar[Need] = SWINGING
 
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -47,10 +47,6 @@ class InertialEffect(Effect):
         tree = subject.tree
         carriers = tree.link_joint.tolist()
         return tuple(name for i, name in enumerate(tree.links) if carriers[i] not in carriers[:i])
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     @override
     def place(self, location: str, subject: Subject) -> str:

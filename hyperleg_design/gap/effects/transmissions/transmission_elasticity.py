@@ -8,13 +8,12 @@ from typing import ClassVar
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints, by_speeds
+from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
 from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import SIDES
 from hyperleg_design.gap.effects.transmissions import belt
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model import machine
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
@@ -80,33 +79,28 @@ class TransmissionElasticity(MotorEffect):
             shape=True,
         ),
     )
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.content > TELLING,
+        f"motion reaches past {TELLING:.0f} Hz",
+        f"motion holds nothing above {TELLING:.0f} Hz: looks like delay",
+        speeds=True,
+    )
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "several amplitudes": FRICTION - {"viscous_friction"} | {"backlash"},
         "chirp past 8 Hz": LATE | {"controller_gain", "rotor_inertia", "viscous_friction"},
         "log rotor speeds": BESIDE_TRANSMISSIONS,
     }
-    look_alikes: ClassVar[Mapping[str, str]] = {
-        "command_delay": "a chirp past 8 Hz",
-    }
+    look_alikes: ClassVar[Mapping[str, str]] = {"command_delay": "a chirp past 8 Hz"}
 
     @override
     def holds_torque(self, values: np.ndarray) -> bool:
         return bool(values[SIDE] >= belt.CHOSEN and (values[3] >= belt.CHOSEN or values[4] > 0))
 
     @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        good = f"motion reaches past {TELLING:.0f} Hz"
-        lacking = f"motion holds nothing above {TELLING:.0f} Hz: looks like delay"
-        return by_speeds(self.identifier, log, motion) or at_joints(
-            self.identifier, motion, motion.content > TELLING, good, lacking
-        )
-
-    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         motor = signals.subject.motors.index(location)
-        compliance, damping_ratio, side, behind, stiffening = np.atleast_2d(
-            np.asarray(values, float)
-        ).T
+        settings = np.atleast_2d(np.asarray(values, float)).T
+        compliance, damping_ratio, side, behind, stiffening = settings
         needed, told = belt.load(signals, motor), belt.transmitted(signals, motor)
         moved = belt.stretch(signals, needed, motor, compliance, damping_ratio, stiffening)
         bent = (stiffening > 0) | (behind >= belt.CHOSEN)

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, by_speeds
+from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import (
     BESIDE_TRANSMISSIONS,
     SCALING,
@@ -21,7 +21,6 @@ from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import SIDES, at_motor, given, motor_velocity
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model import friction
 from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
@@ -61,6 +60,12 @@ class TransmissionRatio(MotorEffect):
         ),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
     )
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.swinging,
+        "through the torques only: it looks like controller_gain",
+        "no motor speeds, and joints hardly move",
+        speeds=True,
+    )
     told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
         "chirp past 8 Hz": frozenset({"torque_constant"}),
         "torque-off swing": WITHOUT_DRIVE,
@@ -68,18 +73,6 @@ class TransmissionRatio(MotorEffect):
         "known angle": SCALING | {"rotor_inertia"},
         "log rotor speeds": BESIDE_TRANSMISSIONS | {"transmission_elasticity", "backlash"},
     }
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        if (shown := by_speeds(self.identifier, log, motion)) is not None:
-            return shown
-        passed = motion.torque & motion.swinging
-        why = (
-            "through the torques only: it looks like controller_gain"
-            if passed.any()
-            else "no motor speeds, and joints hardly move"
-        )
-        return Excitation(self.identifier, bool(passed.any()), tuple(motion.joints[passed]), why)
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
