@@ -52,12 +52,8 @@ def implausible_motion(log: Log) -> Iterator[Finding]:
         if not moving[i] or not np.isfinite(fit[i]):
             continue
         if np.nanstd(integral[:, i]) == 0:
-            yield Finding(
-                ERROR,
-                column,
-                "never changes though the joint moves",
-                "leave the column out, or mend the sensor",
-            )
+            remedy = "leave the column out, or mend the sensor"
+            yield Finding(ERROR, column, "never changes though the joint moves", remedy)
             continue
         rivals = fitted_correlations(moved, integral[:, i])
         rivals[i] = -1
@@ -77,23 +73,15 @@ def implausible_motion(log: Log) -> Iterator[Finding]:
             )
             yield Finding(ERROR, column, text, "the columns of two joints are swapped: rename them")
         elif fit[i] < -RULES.unit.fits:
-            yield Finding(
-                ERROR,
-                column,
-                "runs against the rate of its position",
-                "flip the sign of one of the two",
-            )
+            text = "runs against the rate of its position"
+            yield Finding(ERROR, column, text, "flip the sign of one of the two")
         elif fit[i] > RULES.unit.strange and unit:
             text = f"is {slope[i]:.3g} times the rate of its position: {unit}"
             yield Finding(ERROR, column, text, "convert to rad and rad/s")
         elif fit[i] > RULES.unit.fits and abs(slope[i] - 1) > RULES.unit.tolerance:
             text = f"is {slope[i]:.3g} times the rate of its position"
-            yield Finding(
-                WARNING,
-                column,
-                text,
-                "is it the motor's, before a reduction? then call it motor_velocity",
-            )
+            remedy = "is it the motor's, before a reduction? then call it motor_velocity"
+            yield Finding(WARNING, column, text, remedy)
         elif fit[i] < RULES.unit.strange:
             text = f"hardly follows the rate of its position (correlation {fit[i]:.2f})"
             yield Finding(

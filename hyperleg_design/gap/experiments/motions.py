@@ -239,15 +239,8 @@ def swinging(subject: Subject, room: Room, rate: float) -> Motion | LeftOut:
             position = np.concatenate([lift, free])
             time = np.arange(len(position)) / rate
             target = np.concatenate([target, np.full_like(free, np.nan)])
-            return Motion(
-                name,
-                "friction and springs of the joints with the drives off",
-                time,
-                target,
-                position,
-                size,
-                use,
-            )
+            purpose = "friction and springs of the joints with the drives off"
+            return Motion(name, purpose, time, target, position, size, use)
     return LeftOut(name, "with the drives off the joints swing out of their range")
 
 

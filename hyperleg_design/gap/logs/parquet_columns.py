@@ -36,12 +36,8 @@ def parquet_columns(
 
     schema = file.schema_arrow
     if "t" not in schema.names:
-        raise InputError(
-            path.name,
-            "t",
-            list(schema.names)[:6],
-            "is missing: expects the time in seconds in a column t",
-        )
+        remedy = "is missing: expects the time in seconds in a column t"
+        raise InputError(path.name, "t", list(schema.names)[:6], remedy)
     if wrong := misspelt(schema.names):
         raise InputError(
             path.name, wrong[0], None, f"is no column of the log format; did you mean {wrong[1]}?"

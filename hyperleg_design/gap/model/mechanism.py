@@ -181,21 +181,13 @@ def mechanism_of(model: mujoco.MjModel) -> Mechanism:
             moving = True
             if kind == kinds.mjJNT_FREE:
                 if above != 0 or floating:
-                    raise InputError(
-                        "robot",
-                        name or "free joint",
-                        None,
-                        "is not the root's; one floating base can be understood",
-                    )
+                    remedy = "is not the root's; one floating base can be understood"
+                    raise InputError("robot", name or "free joint", None, remedy)
                 floating, carrier, rotation, offset = True, BASE, np.eye(3), np.zeros(3)
                 continue
             if kind == kinds.mjJNT_BALL:
-                raise InputError(
-                    "robot",
-                    name,
-                    "ball",
-                    "ball joints are not understood; model it as three hinges",
-                )
+                remedy = "ball joints are not understood; model it as three hinges"
+                raise InputError("robot", name, "ball", remedy)
             anchor = offset + rotation @ model.jnt_pos[joint]
             axes = _axes_with_z(rotation @ model.jnt_axis[joint])
             rows["parent"].append(carrier)

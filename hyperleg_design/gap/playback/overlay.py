@@ -141,12 +141,8 @@ def overlay_from_mapping(content: Mapping[str, Any], where: str) -> Overlay:
     """
     _only(content, _KEYS, where, "")
     if content.get("schema") != SCHEMA:
-        raise InputError(
-            where,
-            "schema",
-            content.get("schema"),
-            f"expects {SCHEMA}; another version of hyperleg wrote this file",
-        )
+        remedy = f"expects {SCHEMA}; another version of hyperleg wrote this file"
+        raise InputError(where, "schema", content.get("schema"), remedy)
     entries = content.get("effects")
     source = content.get("source") or {}
     robot = content.get("robot", "")
@@ -223,18 +219,12 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
                 name: value["value"] for name, value in cause["parameters"].items() if name in own
             }
         except (TypeError, KeyError, AttributeError):
-            raise InputError(
-                where,
-                f"causes.{number}",
-                cause,
-                "expects effect, location and parameters, each with a value",
-            ) from None
+            remedy = "expects effect, location and parameters, each with a value"
+            raise InputError(where, f"causes.{number}", cause, remedy) from None
         if not values:
+            remedy = f"none is a parameter of {key[0]}: {', '.join(own)}"
             raise InputError(
-                where,
-                f"causes.{number}.parameters",
-                sorted(cause["parameters"]),
-                f"none is a parameter of {key[0]}: {', '.join(own)}",
+                where, f"causes.{number}.parameters", sorted(cause["parameters"]), remedy
             )
         change[key] = _checked(where, f"causes.{number}", key[0], values)
     gap = content.get("gap")

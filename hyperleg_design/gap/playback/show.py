@@ -127,12 +127,8 @@ def show(
     places = one.locations(subject)
     if location is None:
         if not places:
-            raise InputError(
-                identifier,
-                "robot",
-                subject.name,
-                f"has no {one.kind} for it; choose another --robot",
-            )
+            remedy = f"has no {one.kind} for it; choose another --robot"
+            raise InputError(identifier, "robot", subject.name, remedy)
         location = places[-1] if one.kind == "link" and not standing else places[0]
     location = one.place(location, subject)
     values = _values(one, location, subject, settings)

@@ -79,12 +79,8 @@ def condition(log: Log, subject: Subject) -> Signals:
     motion = smooth(log.time, position, ticks, velocity)
     lacking = ~np.isfinite(motion.value).any(0)
     if lacking.all():
-        raise InputError(
-            log.name,
-            "position",
-            sorted(log.joints)[:8],
-            f"knows no joint of this robot, {', '.join(subject.joints)}",
-        )
+        remedy = f"knows no joint of this robot, {', '.join(subject.joints)}"
+        raise InputError(log.name, "position", sorted(log.joints)[:8], remedy)
     if lacking.any():
         notes.append(
             f"joints without positions in this log, taken to stand still: "

@@ -52,13 +52,11 @@ def load_subject(
     robot = str(robot) if robot else _agreed([m.robot for m in metadata], "robot", logs)
     base = base or _agreed([m.base for m in metadata], "base", logs)
     if not robot:
-        raise InputError(
-            "robot",
-            "",
-            None,
+        remedy = (
             "is not named: give --robot a design, an MJCF or a URDF, or name it in the logs' "
-            "metadata",
+            "metadata"
         )
+        raise InputError("robot", "", None, remedy)
     chosen = (
         tuple(overrides)
         if overrides is not None

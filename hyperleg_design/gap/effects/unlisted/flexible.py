@@ -70,12 +70,8 @@ class Flexible(JointEffect):
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        raise InputError(
-            self.identifier,
-            "location",
-            location,
-            "is added to no simulation: nobody knows what it is in other motions",
-        )
+        remedy = "is added to no simulation: nobody knows what it is in other motions"
+        raise InputError(self.identifier, "location", location, remedy)
 
     @override
     def describe(self, values: np.ndarray) -> str:

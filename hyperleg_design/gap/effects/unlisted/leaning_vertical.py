@@ -79,12 +79,8 @@ class LeaningVertical(Effect):
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        raise InputError(
-            self.identifier,
-            "location",
-            location,
-            "is added to no simulation: level the base, or declare the logs' `gravity`",
-        )
+        remedy = "is added to no simulation: level the base, or declare the logs' `gravity`"
+        raise InputError(self.identifier, "location", location, remedy)
 
     @override
     def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:

@@ -68,12 +68,8 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
     said = beside(path, metadata)
     features = info.get("features", {})
     if "observation.state" not in features:
-        raise InputError(
-            f"{path.name}/meta/info.json",
-            "features",
-            sorted(features)[:6],
-            "expects observation.state",
-        )
+        where = f"{path.name}/meta/info.json"
+        raise InputError(where, "features", sorted(features)[:6], "expects observation.state")
     found = [name.removesuffix(".pos") for name in _names(features["observation.state"], path.name)]
     joints = joint_names(said, found, path.name)
     table, read, rows = _table(path, [f for f in SIGNALS if f in features])
@@ -149,12 +145,8 @@ def _table(path: Path, features: list[str]) -> tuple[dict[str, np.ndarray], int,
 
     files = sorted((path / "data").rglob("*.parquet"))
     if not files:
-        raise InputError(
-            f"{path.name}/data",
-            "",
-            None,
-            "holds no Parquet tables: download the dataset with its data",
-        )
+        remedy = "holds no Parquet tables: download the dataset with its data"
+        raise InputError(f"{path.name}/data", "", None, remedy)
     columns = ["timestamp", "episode_index", *features]
     parts: dict[str, list[np.ndarray]] = {c: [] for c in columns}
     read, rows, held = 0, 0, 0
@@ -212,13 +204,10 @@ def _scale(
             remarks.append(f"positions are taken as degrees, as {kind} has them by default")
         elif np.nanmax(np.abs(table["observation.state"]), initial=0) > LARGEST_ANGLE:
             largest = round(float(np.nanmax(np.abs(table["observation.state"]))), 3)
-            raise InputError(
-                where,
-                "units.position",
-                largest,
-                f'is no angle in rad: say `"units": {{"position": "deg"}}` in '
-                f"{where}/{FOLDER_FILE}",
+            remedy = (
+                f'is no angle in rad: say `"units": {{"position": "deg"}}` in {where}/{FOLDER_FILE}'
             )
+            raise InputError(where, "units.position", largest, remedy)
         else:
             unit = "rad"
             remarks.append("positions are taken as rad: the source does not say")

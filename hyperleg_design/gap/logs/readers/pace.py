@@ -47,12 +47,8 @@ def read_pace(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
     said = beside(path, metadata)
     for key in ("time", "dof_pos"):
         if not isinstance(content.get(key), np.ndarray):
-            raise InputError(
-                path.name,
-                key,
-                sorted(map(str, content))[:8],
-                "is missing: expects PACE's tensors time, dof_pos, des_dof_pos",
-            )
+            remedy = "is missing: expects PACE's tensors time, dof_pos, des_dof_pos"
+            raise InputError(path.name, key, sorted(map(str, content))[:8], remedy)
     time = np.asarray(content["time"], float).reshape(-1)
     shape = content["dof_pos"].shape
     if len(shape) != 2 or shape[0] != len(time):

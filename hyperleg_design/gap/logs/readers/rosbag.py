@@ -89,12 +89,8 @@ def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
     }
     if not states:
         there = sorted({topic for topic, _ in streams})
-        raise InputError(
-            path.name,
-            "topics",
-            there,
-            f"holds no joint states: expects {JOINT_STATE} with positions",
-        )
+        remedy = f"holds no joint states: expects {JOINT_STATE} with positions"
+        raise InputError(path.name, "topics", there, remedy)
     main = max(states, key=lambda topic: len(states[topic].time))
     time, signals, disorder = states[main].arrays()
     if disorder:
@@ -237,12 +233,8 @@ def _messages(part: Path) -> Iterator[mcap.Message]:
         yield from mcap.messages(part, READ)
         return
     if magic != SQLITE:
-        raise InputError(
-            part.name,
-            "",
-            None,
-            "is neither an MCAP file nor a sqlite3 bag; decompress a .zstd bag first",
-        )
+        remedy = "is neither an MCAP file nor a sqlite3 bag; decompress a .zstd bag first"
+        raise InputError(part.name, "", None, remedy)
     try:
         with contextlib.closing(
             sqlite3.connect(f"{part.resolve().as_uri()}?mode=ro", uri=True)

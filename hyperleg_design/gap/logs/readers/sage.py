@@ -69,12 +69,8 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
         (folder / JOINTS).read_text(encoding="utf-8").split() if (folder / JOINTS).is_file() else []
     )
     if listed and len(listed) != width:
-        raise InputError(
-            f"{folder.name}/{JOINTS}",
-            "",
-            len(listed),
-            f"expects {width} names, as many as {STATE} has values",
-        )
+        remedy = f"expects {width} names, as many as {STATE} has values"
+        raise InputError(f"{folder.name}/{JOINTS}", "", len(listed), remedy)
     joints = joint_names(said, listed or [f"joint_{i}" for i in range(width)], folder.name)
     remarks = [] if listed else ["the source names no joints: joint_0, joint_1, ... in its order"]
     scale, found = np.ones(width), {}
@@ -108,11 +104,9 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
     if (folder / CONTROL).is_file():
         own, control = _table(folder / CONTROL, ("positions",))
         if control["positions"].shape[1] != width:
+            remedy = f"expects {width} values, as {STATE}"
             raise InputError(
-                f"{folder.name}/{CONTROL}",
-                "positions",
-                control["positions"].shape[1],
-                f"expects {width} values, as {STATE}",
+                f"{folder.name}/{CONTROL}", "positions", control["positions"].shape[1], remedy
             )
         targets = {
             f"position_target/{joint}": control["positions"][:, i] * scale[i]
@@ -163,12 +157,8 @@ def _table(path: Path, lists: tuple[str, ...]) -> tuple[np.ndarray, dict[str, np
 
     where = f"{path.parent.name}/{path.name}"
     if not path.is_file():
-        raise InputError(
-            where,
-            "",
-            None,
-            f"is missing: a recording is a folder with {STATE}, {CONTROL} and {JOINTS}",
-        )
+        remedy = f"is missing: a recording is a folder with {STATE}, {CONTROL} and {JOINTS}"
+        raise InputError(where, "", None, remedy)
     try:
         table = pd.read_csv(path)
     except (ValueError, pd.errors.ParserError, OSError) as error:
@@ -198,11 +188,7 @@ def _rows(texts: list[Any], where: str, column: str) -> np.ndarray:
                 where, f"{column}, row {number}", text, "expects a list of numbers, [0.1, 0.2]"
             ) from None
         if rows and len(row) != len(rows[0]):
-            raise InputError(
-                where,
-                f"{column}, row {number}",
-                len(row),
-                f"expects {len(rows[0])} values, as in the first row",
-            )
+            remedy = f"expects {len(rows[0])} values, as in the first row"
+            raise InputError(where, f"{column}, row {number}", len(row), remedy)
         rows.append(row)
     return np.array(rows, float)

@@ -70,12 +70,8 @@ def joint_names(said: Mapping[str, Any], found: list[str], where: str) -> list[s
         or len(names) != len(found)
         or not all(isinstance(n, str) for n in names)
     ):
-        raise InputError(
-            where,
-            "joints",
-            names,
-            f"expects a list of {len(found)} names, in the order of the source",
-        )
+        remedy = f"expects a list of {len(found)} names, in the order of the source"
+        raise InputError(where, "joints", names, remedy)
     if len(set(names)) != len(names):
         raise InputError(where, "joints", names, "expects different names")
     return list(names)
