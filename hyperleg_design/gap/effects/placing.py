@@ -25,6 +25,7 @@ from hyperleg_design.gap.model.machine import machine_of
 from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.simulation import alteration
 
 SIDES = ("encoders at the joints", "encoders at the rotors")
 """Choices of the parameter `side`: whose positions logs and controllers know."""
@@ -251,24 +252,14 @@ def limited(
             motor's own.
     """
     subject = signals.subject
-    peak = np.minimum(subject.torque_limit[motor], peak)
     stall, free = line or (subject.stall_torque[motor], subject.no_load_speed[motor])
-    lined = bool(np.isfinite(stall).all() and np.isfinite(free).all())
-    droop = stall / free * signals.motor_speed[:, motor] if lined else np.zeros(1)
-    available = stall * np.maximum(voltage, 0.0) * signals.supplied[:, motor]
-    largest = max(float(np.nanmax(torque, initial=0.0)), -float(np.nanmin(torque, initial=0.0)))
-    if largest <= min(
-        float(np.nanmin(peak, initial=np.inf)),
-        float(np.nanmin(available, initial=np.inf)) - float(np.abs(droop).max()),
-    ):
-        return np.broadcast_to(
-            torque, np.broadcast_shapes(np.shape(torque), np.shape(peak), np.shape(voltage))
-        )
-    torque = np.clip(torque, -peak, peak)
-    if not lined:
-        return torque
-    return np.asarray(
-        np.clip(np.maximum(np.minimum(torque, available - droop), -available - droop), -peak, peak)
+    return alteration.limited(
+        torque,
+        signals.motor_speed[:, motor],
+        np.minimum(subject.torque_limit[motor], peak),
+        stall,
+        free,
+        np.maximum(voltage, 0.0) * signals.supplied[:, motor],
     )
 
 

@@ -32,6 +32,7 @@ from hyperleg_design.gap.signals.limit_cycle import limit_cycle
 from hyperleg_design.gap.signals.sensed import sensed_velocity
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.smoothing import Smooth, smooth
+from hyperleg_design.simulation import alteration
 
 EDGE = 4.0
 """Radians of the slowest smoother's crossover that are left out beside gaps and at the ends of a
@@ -244,17 +245,8 @@ def limited_torque(
     Returns:
         The torques [Nm], `(t, m)`.
     """
-    torque = np.clip(torque, -subject.torque_limit, subject.torque_limit)
-    line = np.isfinite(subject.stall_torque) & np.isfinite(subject.no_load_speed)
-    if line.any():
-        stall = subject.stall_torque[line]
-        droop = stall / subject.no_load_speed[line] * speed[:, line]
-        stall = stall * over_nominal(subject, voltage)[:, line]
-        peak = subject.torque_limit[line]
-        torque[:, line] = np.clip(
-            np.maximum(np.minimum(torque[:, line], stall - droop), -stall - droop), -peak, peak
-        )
-    return torque
+    peak, stall, free = subject.torque_limit, subject.stall_torque, subject.no_load_speed
+    return alteration.limited(torque, speed, peak, stall, free, over_nominal(subject, voltage))
 
 
 def _command(
