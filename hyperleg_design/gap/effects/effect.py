@@ -5,7 +5,7 @@ and its way into the simulation.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -81,7 +81,7 @@ class Effect(ABC):
     motor or joint at which it sits; empty where it scales none."""
     scales_measured: ClassVar[bool] = True
     """Whether it scales torque that is measured, too, not only what a controller asks for."""
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {}
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {}
     """By name of an experiment of `gap/experiments/experiment.py`, effects that it tells apart from
     this one; that one of two effects says so is enough."""
     nuisance_rank: ClassVar[int] = 0

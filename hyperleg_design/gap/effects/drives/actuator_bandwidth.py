@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -22,6 +22,7 @@ from hyperleg_design.simulation.alteration import Limits, Tick
 
 BANDWIDTH = 10.0
 """Content of the command that tells a motor's bandwidth from delay [Hz]."""
+SOURCE = "torque loops of 15-100 Hz, 2-10 ms, on series-elastic and servo drives (assumed)"
 
 
 class _Lagging(MotorHooks):
@@ -58,15 +59,7 @@ class ActuatorBandwidth(MotorEffect):
     nuisance_rank: ClassVar[int] = 2
     summary: ClassVar[str] = "a drive's torque follows its command through a first-order lag"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "time_constant",
-            "s",
-            0.0,
-            0.0,
-            0.1,
-            0.005,
-            "torque loops of 15-100 Hz, 2-10 ms, on series-elastic and servo drives (assumed)",
-        ),
+        Parameter("time_constant", "s", 0.0, 0.0, 0.1, 0.005, SOURCE),
     )
     hooks: ClassVar[type[MotorHooks]] = _Lagging
     needs: ClassVar[Need] = Need(
@@ -75,9 +68,9 @@ class ActuatorBandwidth(MotorEffect):
         f"commands hold nothing above {BANDWIDTH:.0f} Hz: looks like delay",
         asked=True,
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "log torque or current": BEYOND_COMMANDS,
-        "chirp past 8 Hz": frozenset({"controller_gain", "rotor_inertia", "viscous_friction"}),
+        "chirp past 8 Hz": {"controller_gain", "rotor_inertia", "viscous_friction"},
     }
 
     @override

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -29,6 +29,10 @@ ALWAYS = 48
 them below `HIGHEST`."""
 TRIED = 3
 """Best orders kept as starts of a search."""
+COSINE_SOURCE = (
+    "a few per cent of the rated torque of BLDC motors (EMBiR; MuJoCo's dcmotor `cogging`)"
+)
+ORDER_SOURCE = "least common multiple of slots and poles, or its fractions"
 
 
 class _Cogging(MotorHooks):
@@ -53,27 +57,9 @@ class Cogging(MotorTorque):
     identifier: ClassVar[str] = "cogging"
     summary: ClassVar[str] = "a motor's torque varies with its angle, some periods a turn"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "cosine",
-            "Nm",
-            0.0,
-            -20.0,
-            20.0,
-            0.02,
-            "a few per cent of the rated torque of BLDC motors (EMBiR; MuJoCo's dcmotor `cogging`)",
-            of_strength=True,
-        ),
+        Parameter("cosine", "Nm", 0.0, -20.0, 20.0, 0.02, COSINE_SOURCE, of_strength=True),
         Parameter("sine", "Nm", 0.0, -20.0, 20.0, 0.02, "as the cosine", of_strength=True),
-        Parameter(
-            "order",
-            "1/turn",
-            6.0,
-            0.5,
-            200.0,
-            10.0,
-            "least common multiple of slots and poles, or its fractions",
-            shape=True,
-        ),
+        Parameter("order", "1/turn", 6.0, 0.5, 200.0, 10.0, ORDER_SOURCE, shape=True),
     )
     hooks: ClassVar[type[MotorHooks]] = _Cogging
     needs: ClassVar[Need] = Need(
@@ -81,7 +67,7 @@ class Cogging(MotorTorque):
         "slow motion over a range",
         "no slow motion over a range",
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "slow ramp": FRICTION | {"encoder_offset", "joint_spring"}
     }
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -59,9 +59,9 @@ class CommandDelay(Effect):
         f"commands hold nothing above {COMMAND} Hz",
         asked=True,
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "log torque or current": BEYOND_COMMANDS,
-        "chirp past 8 Hz": frozenset({"actuator_bandwidth", "controller_gain", "viscous_friction"}),
+        "chirp past 8 Hz": {"actuator_bandwidth", "controller_gain", "viscous_friction"},
     }
     look_alikes: ClassVar[Mapping[str, str]] = {
         "actuator_bandwidth": "gain and phase at high frequency"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -27,6 +27,10 @@ from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.drives.machine import Machine
 
+STIFFNESS_SCALE_SOURCE = (
+    "servos' registers are nominal: 20 % off (assumed; XL330 and STS3215 fits in BAM)"
+)
+
 
 class ControllerGain(JointEffect):
     """A joint's controller is stiffer or more damped than its declared gains.
@@ -44,20 +48,11 @@ class ControllerGain(JointEffect):
     nuisance_torque: ClassVar[str] = STEERED
     summary: ClassVar[str] = "a joint controller is stiffer or more damped than declared"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "stiffness_scale",
-            "",
-            1.0,
-            0.1,
-            5.0,
-            0.2,
-            "servos' registers are nominal: 20 % off (assumed; XL330 and STS3215 fits in BAM)",
-            spread=0.015,
-        ),
+        Parameter("stiffness_scale", "", 1.0, 0.1, 5.0, 0.2, STIFFNESS_SCALE_SOURCE, spread=0.015),
         Parameter("damping_scale", "", 1.0, 0.0, 5.0, 0.2, "as the stiffness", spread=0.015),
     )
     needs: ClassVar[Need] = replace(SWINGING, good="targets, gains and motion", asked=True)
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "log torque or current": BEYOND_COMMANDS,
         "several amplitudes": FRICTION - {"viscous_friction"} | {"backlash", "torque_saturation"},
         "torque-off swing": WITHOUT_DRIVE,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -26,6 +26,7 @@ CONTENT = 1.0
 """Content of the motion from which a rotor's inertia shows [Hz]."""
 OF_ROTOR, OF_JOINT = 0.06, 0.01
 """Usual error over the rotor's inertia and over that of its joint."""
+SOURCE = "0.03-0.1 kg m^2 reflected on leg joints; `usual` knows the motor's side"
 
 
 class RotorInertia(MotorTorque):
@@ -40,15 +41,7 @@ class RotorInertia(MotorTorque):
     described: ClassVar[bool] = True
     summary: ClassVar[str] = "a rotor (and its gear) has more or less inertia than the model"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "inertia",
-            "kg m^2",
-            0.0,
-            -5.0,
-            5.0,
-            0.05,
-            "0.03-0.1 kg m^2 reflected on leg joints; `usual` knows the motor's side",
-        ),
+        Parameter("inertia", "kg m^2", 0.0, -5.0, 5.0, 0.05, SOURCE),
     )
     linear: ClassVar[bool] = True
     needs: ClassVar[Need] = Need(
@@ -56,8 +49,8 @@ class RotorInertia(MotorTorque):
         "motion accelerates",
         "hardly any acceleration",
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "chirp past 8 Hz": frozenset({"controller_gain", "torque_constant", "transmission_ratio"}),
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
+        "chirp past 8 Hz": {"controller_gain", "torque_constant", "transmission_ratio"},
         "several postures": INERTIAL,
     }
     look_alikes: ClassVar[Mapping[str, str]] = {"link_mass": "several postures"}

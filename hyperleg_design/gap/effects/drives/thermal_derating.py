@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -30,6 +30,7 @@ RATED_SHARE = 1 / 3
 """Rated over largest torque where nobody gives it (assumed)."""
 WARMING = 10.0
 """Rise of a motor's temperature that changes torque visibly [K]."""
+SOURCE = "flux of NdFeB -0.12 %/K, of ferrites -0.2 %/K; copper 0.39 %/K with voltage drives"
 
 
 class ThermalDerating(MotorTorque):
@@ -49,18 +50,10 @@ class ThermalDerating(MotorTorque):
     """Assumed."""
     summary: ClassVar[str] = "a motor loses torque as it warms up"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "coefficient",
-            "1/K",
-            0.0,
-            0.0,
-            0.012,
-            0.002,
-            "flux of NdFeB -0.12 %/K, of ferrites -0.2 %/K; copper 0.39 %/K with voltage drives",
-        ),
+        Parameter("coefficient", "1/K", 0.0, 0.0, 0.012, 0.002, SOURCE),
     )
     linear: ClassVar[bool] = True
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "known payload": WITH_LOAD,
         "cold and warm": SCALING | {"load_dependent_friction"},
     }

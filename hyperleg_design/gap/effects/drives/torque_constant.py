@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -97,7 +97,7 @@ class TorqueConstant(MotorEffect):
     )
     linear: ClassVar[bool] = True
     hooks: ClassVar[type[MotorHooks]] = _Scaled
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "several amplitudes": FRICTION - {"viscous_friction"},
         "torque-off swing": WITHOUT_DRIVE,
         "known payload": WITH_LOAD,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -30,6 +30,7 @@ _NEEDED = 0.95
 LEAST = 0.03
 """Limit over the torque that the motor is made for (assumed: current limits of 5 % are set by
 nobody)."""
+SOURCE = "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor"
 
 
 def _limit(inverse: np.ndarray) -> np.ndarray:
@@ -60,15 +61,7 @@ class TorqueSaturation(MotorEffect):
     identifier: ClassVar[str] = "torque_saturation"
     summary: ClassVar[str] = "a drive limits its torque (or current) to less than the model's limit"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "inverse_limit",
-            "1/Nm",
-            0.0,
-            0.0,
-            1e3,
-            0.1,
-            "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor",
-        ),
+        Parameter("inverse_limit", "1/Nm", 0.0, 0.0, 1e3, 0.1, SOURCE),
     )
     hooks: ClassVar[type[MotorHooks]] = _Lower
     needs: ClassVar[Need] = Need(
@@ -77,7 +70,7 @@ class TorqueSaturation(MotorEffect):
         "commands hardly change",
         asked=True,
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {"log torque or current": BEYOND_COMMANDS}
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {"log torque or current": BEYOND_COMMANDS}
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:

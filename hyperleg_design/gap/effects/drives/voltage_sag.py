@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -39,6 +39,9 @@ REFERENCE_SPEED = 0.5
 """Reference power: the torque that the joints are made for at this speed [rad/s]; assumed."""
 SAGGING = 0.03
 """Spread of the voltage over its mean that changes torque visibly."""
+LIMITS_SOURCE = "1: as a DC motor's; 5.8-9.2 V at 7.4 V nominal (XL330 log)"
+TORQUE_SOURCE = "1: as of servos driven by duty cycle, without current control"
+SPEED_SOURCE = "no-load speeds of servos 6-10 rad/s, of legs' joints 10-25 rad/s (data sheets)"
 
 
 class VoltageSag(Effect):
@@ -63,40 +66,13 @@ class VoltageSag(Effect):
     """Assumed."""
     summary: ClassVar[str] = "the battery's voltage drops, and with it torque limits or torques"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "limits",
-            "",
-            0.0,
-            0.0,
-            20.0,
-            1.0,
-            "1: as a DC motor's; 5.8-9.2 V at 7.4 V nominal (XL330 log)",
-        ),
-        Parameter(
-            "torque",
-            "",
-            0.0,
-            -0.5,
-            4.0,
-            1.0,
-            "1: as of servos driven by duty cycle, without current control",
-        ),
-        Parameter(
-            "speed",
-            "rad/s",
-            10.0,
-            0.5,
-            60.0,
-            5.0,
-            "no-load speeds of servos 6-10 rad/s, of legs' joints 10-25 rad/s (data sheets)",
-            shape=True,
-        ),
+        Parameter("limits", "", 0.0, 0.0, 20.0, 1.0, LIMITS_SOURCE),
+        Parameter("torque", "", 0.0, -0.5, 4.0, 1.0, TORQUE_SOURCE),
+        Parameter("speed", "rad/s", 10.0, 0.5, 60.0, 5.0, SPEED_SOURCE, shape=True),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "log torque or current": BEYOND_COMMANDS,
-        "several amplitudes": frozenset(
-            {"controller_gain", "torque_constant", "torque_saturation"}
-        ),
+        "several amplitudes": {"controller_gain", "torque_constant", "torque_saturation"},
         "torque-off swing": WITHOUT_DRIVE,
         "stiff supply": LATE | SCALING | {"torque_saturation"},
     }

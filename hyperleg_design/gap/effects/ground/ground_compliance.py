@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -22,6 +22,10 @@ from hyperleg_design.simulation.alteration import Alteration
 USUAL = 0.5
 """Usual error of how the ground gives and damps, over it; no simulator has it from a
 measurement."""
+SCALE_SOURCE = "soles and mats: 1-5 mm under body weight against a fraction of that (estimate)"
+DAMPING_SCALE_SOURCE = (
+    "of the damping ratio: rubber 0.05-0.3 against a critically damped model (estimate)"
+)
 
 
 class GroundCompliance(FootEffect):
@@ -35,28 +39,10 @@ class GroundCompliance(FootEffect):
     nuisance_rank: ClassVar[int] = 1
     summary: ClassVar[str] = "the ground or the sole is softer or harder under a foot"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "scale",
-            "",
-            1.0,
-            0.1,
-            20.0,
-            1.0,
-            "soles and mats: 1-5 mm under body weight against a fraction of that (estimate)",
-            spread=USUAL,
-        ),
-        Parameter(
-            "damping_scale",
-            "",
-            1.0,
-            0.1,
-            5.0,
-            0.5,
-            "of the damping ratio: rubber 0.05-0.3 against a critically damped model (estimate)",
-            spread=USUAL,
-        ),
+        Parameter("scale", "", 1.0, 0.1, 20.0, 1.0, SCALE_SOURCE, spread=USUAL),
+        Parameter("damping_scale", "", 1.0, 0.1, 5.0, 0.5, DAMPING_SCALE_SOURCE, spread=USUAL),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "push on the ground": FRICTION | INERTIAL | {"ground_friction"}
     }
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -18,6 +18,8 @@ from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import WIDTH, sliding
 from hyperleg_design.simulation.alteration import Alteration
 
+SOURCE = "4-5.6 Nm on harmonic drives of 100 Nm (BAM, arXiv 2410.08650); 0.7 on an RMD-X8"
+
 
 class CoulombFriction(ModelledFriction):
     """A joint resists sliding with one torque at any speed, beyond (or, negative, short of) the
@@ -30,21 +32,13 @@ class CoulombFriction(ModelledFriction):
     summary: ClassVar[str] = "a joint resists motion with a torque of constant size"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
-            "torque",
-            "Nm",
-            0.0,
-            -50.0,
-            100.0,
-            0.04,
-            "4-5.6 Nm on harmonic drives of 100 Nm (BAM, arXiv 2410.08650); 0.7 on an RMD-X8",
-            spread=COULOMB_LEAST,
-            of_strength=True,
+            "torque", "Nm", 0.0, -50.0, 100.0, 0.04, SOURCE, spread=COULOMB_LEAST, of_strength=True
         ),
     )
     linear: ClassVar[bool] = True
     described: ClassVar[bool] = True
     needs: ClassVar[Need] = REVERSING
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "slow ramp": FRICTION | {"cogging", "joint_spring"}
     }
     look_alikes: ClassVar[Mapping[str, str]] = {"backlash": "preload"}

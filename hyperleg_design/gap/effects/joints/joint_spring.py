@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -17,6 +17,9 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration, Tick
 
+SOURCE = "cable bundles and seals, 5 % of the joint's torque a radian, and at rest (assumed)"
+USUAL = 0.05, SOURCE, 0.002
+
 
 class JointSpring(JointTorque):
     """A cable, a seal or a spring pulls a joint back: stiffness (q - default) + preload, default
@@ -29,33 +32,13 @@ class JointSpring(JointTorque):
     nuisance_rank: ClassVar[int] = 5
     summary: ClassVar[str] = "a cable or a spring pulls a joint towards some angle"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "stiffness",
-            "Nm/rad",
-            0.0,
-            -100.0,
-            500.0,
-            0.05,
-            "cable bundles and seals, 5 % of the joint's torque a radian (assumed)",
-            spread=0.002,
-            of_strength=True,
-        ),
-        Parameter(
-            "preload",
-            "Nm",
-            0.0,
-            -100.0,
-            100.0,
-            0.05,
-            "as the stiffness, at the posture of rest (assumed)",
-            spread=0.002,
-            of_strength=True,
-        ),
+        Parameter("stiffness", "Nm/rad", 0.0, -100.0, 500.0, *USUAL, of_strength=True),
+        Parameter("preload", "Nm", 0.0, -100.0, 100.0, *USUAL, of_strength=True),
     )
     linear: ClassVar[bool] = True
     needs: ClassVar[Need] = SWINGING
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "several amplitudes": frozenset({"backlash", "coulomb_friction"}),
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
+        "several amplitudes": {"backlash", "coulomb_friction"},
         "several postures": INERTIAL,
     }
 

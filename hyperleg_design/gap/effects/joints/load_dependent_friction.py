@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -18,6 +18,8 @@ from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.simulation.alteration import Alteration
 
+SOURCE = "20-31 % of the motor's torque on small servos, 4-5 % on good gears (BAM)"
+
 
 class LoadDependentFriction(JointTorque):
     """A joint resists sliding with a share of the torque that it transmits: what its motion needs
@@ -32,16 +34,7 @@ class LoadDependentFriction(JointTorque):
     nuisance_rank: ClassVar[int] = 3
     summary: ClassVar[str] = "a joint resists motion with a share of the torque that it transmits"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "coefficient",
-            "",
-            0.0,
-            0.0,
-            0.8,
-            0.1,
-            "20-31 % of the motor's torque on small servos, 4-5 % on good gears (BAM)",
-            spread=0.006,
-        ),
+        Parameter("coefficient", "", 0.0, 0.0, 0.8, 0.1, SOURCE, spread=0.006),
     )
     linear: ClassVar[bool] = True
     needs: ClassVar[Need] = Need(
@@ -49,7 +42,7 @@ class LoadDependentFriction(JointTorque):
         "reverses under different loads",
         "no joint reverses under different loads",
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "preload": FRICTION,
         "known payload": FRICTION,
     }

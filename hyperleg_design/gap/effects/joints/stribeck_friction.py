@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -16,6 +16,10 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.simulation.alteration import Alteration
+
+SPREAD = 0.3 * COULOMB_LEAST
+TORQUE_SOURCE = "breakaway 2.4-3.3 Nm against 0.7 Nm sliding on an RMD-X8 of 40 Nm"
+SPEED_SOURCE = "0.01-0.3 rad/s (Armstrong-Helouvry et al. 1994; BAM fits)"
 
 
 class StribeckFriction(ModelledFriction):
@@ -39,30 +43,19 @@ class StribeckFriction(ModelledFriction):
             0.0,
             50.0,
             0.04,
-            "breakaway 2.4-3.3 Nm against 0.7 Nm sliding on an RMD-X8 of 40 Nm",
-            spread=0.3 * COULOMB_LEAST,
+            TORQUE_SOURCE,
+            0.3 * COULOMB_LEAST,
             of_strength=True,
         ),
-        Parameter(
-            "speed",
-            "rad/s",
-            0.1,
-            0.01,
-            2.0,
-            0.1,
-            "0.01-0.3 rad/s (Armstrong-Helouvry et al. 1994; BAM fits)",
-            shape=True,
-        ),
+        Parameter("speed", "rad/s", 0.1, 0.01, 2.0, 0.1, SPEED_SOURCE, shape=True),
     )
     needs: ClassVar[Need] = Need(
         lambda motion: motion.reversing & (motion.slow > SLOW),
         "slow and fast motion",
         "no slow motion: breakaway is passed in a few ticks",
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "slow ramp": frozenset(
-            {"backlash", "cogging", "load_dependent_friction", "viscous_friction"}
-        )
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
+        "slow ramp": {"backlash", "cogging", "load_dependent_friction", "viscous_friction"}
     }
 
     def _torque(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -18,6 +18,7 @@ from hyperleg_design.simulation.alteration import Alteration
 
 SPEED_SPREAD = 3.0
 """Fastest tenth over slowest tenth of the moving time, that tells viscous from Coulomb friction."""
+SOURCE = "1.3-9.7 Nms/rad on harmonic drives of 100 Nm (BAM, arXiv 2410.08650)"
 
 
 class ViscousFriction(ModelledFriction):
@@ -30,15 +31,7 @@ class ViscousFriction(ModelledFriction):
     summary: ClassVar[str] = "a joint resists motion in proportion to its velocity"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
-            "damping",
-            "Nms/rad",
-            0.0,
-            -50.0,
-            100.0,
-            0.02,
-            "1.3-9.7 Nms/rad on harmonic drives of 100 Nm (BAM, arXiv 2410.08650)",
-            spread=0.0007,
-            of_strength=True,
+            "damping", "Nms/rad", 0.0, -50.0, 100.0, 0.02, SOURCE, spread=0.0007, of_strength=True
         ),
     )
     linear: ClassVar[bool] = True
@@ -49,10 +42,10 @@ class ViscousFriction(ModelledFriction):
         "speeds differ",
         "one speed only: viscous and Coulomb friction look alike",
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "several amplitudes": FRICTION,
         "slow ramp": LATE | {"controller_gain"},
-        "cold and warm": frozenset({"torque_constant"}),
+        "cold and warm": {"torque_constant"},
     }
     look_alikes: ClassVar[Mapping[str, str]] = {
         "voltage_sag": "drives off: no back-EMF, no damping gain",

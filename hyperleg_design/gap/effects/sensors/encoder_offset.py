@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -22,6 +22,7 @@ NODES = 5
 one joint's angle."""
 
 Basis = dict[str, tuple[np.ndarray, np.ndarray]]
+SOURCE = "up to 0.1 rad on calibrated legs (PACE, arXiv 2509.06342)"
 
 
 class _Shifted(JointHooks):
@@ -48,20 +49,11 @@ class EncoderOffset(JointEffect):
     nuisance_rank: ClassVar[int] = 4
     summary: ClassVar[str] = "a joint's encoder reads a constant angle too much"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "offset",
-            "rad",
-            0.0,
-            -0.3,
-            0.3,
-            0.03,
-            "up to 0.1 rad on calibrated legs (PACE, arXiv 2509.06342)",
-            spread=0.003,
-        ),
+        Parameter("offset", "rad", 0.0, -0.3, 0.3, 0.03, SOURCE, spread=0.003),
     )
     hooks: ClassVar[type[JointHooks]] = _Shifted
     needs: ClassVar[Need] = SWINGING
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "several postures": INERTIAL | {"imu_bias", "joint_spring", "torque_constant"}
     }
     look_alikes: ClassVar[Mapping[str, str]] = {"link_com": "several postures"}

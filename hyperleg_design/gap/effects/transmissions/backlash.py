@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -46,7 +46,7 @@ class Backlash(MotorEffect):
         Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=belt.RUBBING),
     )
     needs: ClassVar[Need] = dataclasses.replace(REVERSING, speeds=True)
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "preload": FRICTION | LATE | {"cogging", "transmission_elasticity"},
         "log rotor speeds": BESIDE_TRANSMISSIONS,
     }

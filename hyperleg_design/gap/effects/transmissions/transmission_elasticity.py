@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -32,6 +32,9 @@ SIDE = 2
 """Parameter that tells where encoders are."""
 TELLING = 8.0
 """Content of the motion that tells elasticity from delay [Hz]."""
+COMPLIANCE_SOURCE = "belt resonance 5-30 Hz (engineering estimate); `usual` knows the rotor"
+DAMPING_RATIO_SOURCE = "steel-corded belts ring for a few periods (assumed)"
+STIFFENING_SOURCE = "gears are two to three times as stiff beyond some mrad (data sheets)"
 
 
 class TransmissionElasticity(MotorEffect):
@@ -47,37 +50,13 @@ class TransmissionElasticity(MotorEffect):
     """How rotors move on belts that give was 10 to 25 % off in development."""
     summary: ClassVar[str] = "a belt, cable or gear gives under load, so motor and joint move apart"
     parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("compliance", "rad/Nm", 0.0, 0.0, 1e4, 0.01, COMPLIANCE_SOURCE),
         Parameter(
-            "compliance",
-            "rad/Nm",
-            0.0,
-            0.0,
-            1e4,
-            0.01,
-            "belt resonance 5-30 Hz (engineering estimate); `usual` knows the rotor",
-        ),
-        Parameter(
-            "damping_ratio",
-            "",
-            DAMPING_RATIO,
-            0.0,
-            1.0,
-            0.05,
-            "steel-corded belts ring for a few periods (assumed)",
-            shape=True,
+            "damping_ratio", "", DAMPING_RATIO, 0.0, 1.0, 0.05, DAMPING_RATIO_SOURCE, shape=True
         ),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
         Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=belt.RUBBING),
-        Parameter(
-            "stiffening",
-            "1/rad",
-            0.0,
-            0.0,
-            200.0,
-            STIFFER,
-            "gears are two to three times as stiff beyond some mrad (data sheets)",
-            shape=True,
-        ),
+        Parameter("stiffening", "1/rad", 0.0, 0.0, 200.0, STIFFER, STIFFENING_SOURCE, shape=True),
     )
     needs: ClassVar[Need] = Need(
         lambda motion: motion.content > TELLING,
@@ -85,7 +64,7 @@ class TransmissionElasticity(MotorEffect):
         f"motion holds nothing above {TELLING:.0f} Hz: looks like delay",
         speeds=True,
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "several amplitudes": FRICTION - {"viscous_friction"} | {"backlash"},
         "chirp past 8 Hz": LATE | {"controller_gain", "rotor_inertia", "viscous_friction"},
         "log rotor speeds": BESIDE_TRANSMISSIONS,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -29,6 +29,8 @@ from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.alteration import Alteration, Live
 from hyperleg_design.simulation.drives.machine import Machine
 
+SCALE_SOURCE = "linkages off their design point, one tooth of 40 on a pulley (assumed)"
+
 
 class TransmissionRatio(MotorEffect):
     """A motor turns `scale` times as fast over its joints as the model says, and pulls on them
@@ -49,15 +51,7 @@ class TransmissionRatio(MotorEffect):
     """Assumed: belts have the ratio of their teeth."""
     summary: ClassVar[str] = "a transmission's ratio differs from the model's"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "scale",
-            "",
-            1.0,
-            0.7,
-            1.4,
-            0.03,
-            "linkages off their design point, one tooth of 40 on a pulley (assumed)",
-        ),
+        Parameter("scale", "", 1.0, 0.7, 1.4, 0.03, SCALE_SOURCE),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
     )
     needs: ClassVar[Need] = Need(
@@ -66,8 +60,8 @@ class TransmissionRatio(MotorEffect):
         "no motor speeds, and joints hardly move",
         speeds=True,
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "chirp past 8 Hz": frozenset({"torque_constant"}),
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
+        "chirp past 8 Hz": {"torque_constant"},
         "torque-off swing": WITHOUT_DRIVE,
         "known payload": WITH_LOAD,
         "known angle": SCALING | {"rotor_inertia"},
