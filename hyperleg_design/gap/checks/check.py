@@ -22,17 +22,13 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, NOTE, SEVERITIES, WARNING, Finding
 from hyperleg_design.writing import plain
 
-BOUNDED = (
-    "joint_torque",
-    "motor_torque",
-    "motor_torque_command",
-    "motor_current",
-    "motor_velocity",
-    "velocity",
-    "gyro",
-    "accelerometer",
-)
+IMU = ("gyro", "accelerometer")
+SENSED = ("joint_torque", "motor_torque", "motor_current", "motor_velocity", *IMU)
+"""Signals of sensors that never stay as they are."""
+BOUNDED = (*SENSED, "motor_torque_command", "velocity")
 """Signals in which a bound that clips is looked for; positions and targets may well rest at one."""
+SLOW = ("position_target", "motor_temperature", "battery_voltage", "motor_torque_command")
+"""Signals that are often given at lower rates than others."""
 
 
 @dataclass(frozen=True)
@@ -219,17 +215,7 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> Iterator[Findin
         if one.rate < 0.75 * sampling.rate and not one.constant:
             how = "held" if one.held > 1 else "given"
             text = f"is {how} at {one.rate:.3g} Hz in a log of {sampling.rate:.3g} Hz"
-            severity = (
-                NOTE
-                if kind
-                in (
-                    "position_target",
-                    "motor_temperature",
-                    "battery_voltage",
-                    "motor_torque_command",
-                )
-                else WARNING
-            )
+            severity = NOTE if kind in SLOW else WARNING
             yield Finding(severity, one.column, text, "it counts at its own rate")
         if kind in BOUNDED and one.saturated > RULES.clock.saturated:
             text = (
@@ -238,14 +224,6 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> Iterator[Findin
             )
             remedy = "a sensor's range or a drive's limit: effects beyond it do not show"
             yield Finding(WARNING, one.column, text, remedy)
-        if one.constant and kind in (
-            "joint_torque",
-            "motor_torque",
-            "motor_current",
-            "gyro",
-            "accelerometer",
-            "motor_velocity",
-        ):
-            yield Finding(
-                WARNING, one.column, f"never changes from {one.low:.4g}", "is the sensor connected?"
-            )
+        if one.constant and kind in SENSED:
+            text = f"never changes from {one.low:.4g}"
+            yield Finding(WARNING, one.column, text, "is the sensor connected?")

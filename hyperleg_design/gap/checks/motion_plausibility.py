@@ -58,14 +58,8 @@ def implausible_motion(log: Log) -> Iterator[Finding]:
         rivals = fitted_correlations(moved, integral[:, i])
         rivals[i] = -1
         best = int(np.nanargmax(rivals)) if np.isfinite(rivals).any() else i
-        unit = next(
-            (
-                text
-                for value, text in units
-                if abs(abs(slope[i]) / value - 1) < RULES.unit.tolerance
-            ),
-            "",
-        )
+        ratio, close = abs(slope[i]), RULES.unit.tolerance
+        unit = next((text for value, text in units if abs(ratio / value - 1) < close), "")
         if abs(fit[i]) < RULES.unit.strange and rivals[best] > RULES.unit.fits:
             text = (
                 f"follows the motion of {joints[best]} (correlation {rivals[best]:.2f}), not "
@@ -94,12 +88,8 @@ def _windows(log: Log, joints: list[str]) -> tuple[np.ndarray, np.ndarray]:
     width = max(1, round(RULES.unit.window / log.step))
     position, velocity = log.stack("position", joints), log.stack("velocity", joints)
     steps = np.diff(log.time)[:, None]
-    area = np.concatenate(
-        [
-            np.zeros((1, len(joints))),
-            np.cumsum(np.nan_to_num(0.5 * (velocity[1:] + velocity[:-1])) * steps, 0),
-        ]
-    )
+    parts = np.nan_to_num(0.5 * (velocity[1:] + velocity[:-1])) * steps
+    area = np.concatenate([np.zeros((1, len(joints))), np.cumsum(parts, 0)])
     lost = np.cumsum(~np.isfinite(velocity), 0)
     moved, integral = position[width:] - position[:-width], area[width:] - area[:-width]
     unknown = (lost[width:] > lost[:-width]) | (

@@ -20,6 +20,14 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, NOTE, WARNING, Finding
 from hyperleg_design.gap.signals.smoothing import bridged
 
+LARGEST = {
+    "motor_current": (RULES.unit.largest_current, "mA: convert to A"),
+    "battery_voltage": (RULES.unit.largest_voltage, "mV: convert to V"),
+    "motor_temperature": (RULES.unit.largest_temperature, "kelvin or fahrenheit: convert to degC"),
+    "gyro": (RULES.unit.largest_rate, "deg/s: convert to rad/s"),
+}
+"""By signal, what no robot exceeds, and the unit in which it then is."""
+
 
 def implausible(log: Log, subject: Subject | None = None) -> list[Finding]:
     """Find what does not fit in a log: units, signs, swapped joints, stuck sensors, another robot.
@@ -48,34 +56,19 @@ def _magnitudes(log: Log) -> Iterator[Finding]:
             continue
         largest = float(np.nanmax(np.abs(values)))
         middle = float(np.nanpercentile(np.abs(values), 90))
-        if (
-            kind in ("position", "position_target")
-            and float(np.nanmax(values) - np.nanmin(values)) > RULES.unit.largest_angle
-        ):
-            text = (
-                f"spans {float(np.nanmax(values) - np.nanmin(values)):.3g} rad, two turns or more"
-            )
+        span = float(np.nanmax(values) - np.nanmin(values))
+        if kind in ("position", "position_target") and span > RULES.unit.largest_angle:
+            text = f"spans {span:.3g} rad, two turns or more"
             remedy = "if it is in degrees, convert to rad; a joint that turns on and on is well"
             yield Finding(WARNING, column, text, remedy)
-        limit, unit = {
-            "motor_current": (RULES.unit.largest_current, "mA: convert to A"),
-            "battery_voltage": (RULES.unit.largest_voltage, "mV: convert to V"),
-            "motor_temperature": (
-                RULES.unit.largest_temperature,
-                "kelvin or fahrenheit: convert to degC",
-            ),
-            "gyro": (RULES.unit.largest_rate, "deg/s: convert to rad/s"),
-        }.get(kind, (math.inf, ""))
+        limit, unit = LARGEST.get(kind, (math.inf, ""))
         if middle > limit or (kind == "gyro" and largest > 2 * limit):
             text = f"reaches {largest:.4g}, no such thing in this unit"
             yield Finding(ERROR, column, text, f"looks like {unit}")
     if all(log.has("accelerometer", axis) for axis in "xyz"):
         # axes that are told in turn are each known all along
-        weight = float(
-            np.median(
-                np.linalg.norm([bridged(axis) for axis in log.vector("accelerometer").T], axis=0)
-            )
-        )
+        force = [bridged(axis) for axis in log.vector("accelerometer").T]
+        weight = float(np.median(np.linalg.norm(force, axis=0)))
         if not 5 < weight < 20:
             text = f"has a median length of {weight:.3g} m/s^2 where gravity makes 9.8"
             remedy = "convert from g, or leave gravity in: +9.81 upward at rest"

@@ -177,23 +177,8 @@ def _rows(group: Sequence[Sheet], floors: dict[tuple[str, str, str], np.ndarray]
         for k, name in enumerate(names):
             if not ticks[k]:
                 continue
-            part = float(min(share[k], 1.0)) if np.isfinite(share[k]) else 0.0
-            rows.append(
-                (
-                    k,
-                    Row(
-                        first.signal,
-                        first.unit,
-                        first.kind,
-                        name,
-                        regime,
-                        float(gap[k]),
-                        float(floor[k]),
-                        float(mean[k]),
-                        part,
-                        float(size[k]),
-                        int(ticks[k]),
-                    ),
-                )
-            )
+            what = first.signal, first.unit, first.kind, name, regime
+            part = min(share[k], 1.0) if np.isfinite(share[k]) else 0.0
+            numbers = (float(x) for x in (gap[k], floor[k], mean[k], part, size[k]))
+            rows.append((k, Row(*what, *numbers, int(ticks[k]))))
     return [row for _, row in sorted(rows, key=lambda pair: pair[0])]

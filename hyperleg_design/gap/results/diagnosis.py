@@ -120,9 +120,6 @@ class Diagnosis:
     """What the residual that no cause explains looks like, the largest first."""
     checks: tuple[str, ...] = ()
     """Remarks on the logs."""
-    at_rest: tuple[Mapping[str, Any], ...] = ()
-    """Joints that hold more than all known friction while they stand: `location`, `torque` beyond
-    it [Nm], and `says`."""
     sensitivity: tuple[Mapping[str, Any], ...] = ()
     """Smallest change of each effect's parameters that these logs would have shown, see
     `sensitivity`."""
