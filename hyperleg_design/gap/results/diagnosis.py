@@ -173,7 +173,7 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
     if (verdict := content.get("verdict")) not in VERDICTS:
         raise InputError(where, "verdict", verdict, f"expects one of {', '.join(VERDICTS)}")
     try:
-        values = {
+        values: dict[str, Any] = {
             field.name: tuple(value) if isinstance(value, list) else value
             for field in fields(Diagnosis)
             if (value := content.get(field.name, field.default)) is not MISSING
