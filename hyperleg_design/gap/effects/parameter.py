@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from hyperleg_design.errors import InputError
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -33,3 +35,22 @@ class Parameter:
     the size is at its null."""
     choices: tuple[str, ...] = ()
     """What 0, 1, ... stand for, of one that is no size."""
+
+    def checked(self, value: float, where: str, field: str) -> float:
+        """A value inside the bounds.
+
+        Args:
+            value: that somebody gave.
+            where: file or option, for the message.
+            field: place there.
+
+        Returns:
+            The value.
+
+        Raises:
+            InputError: outside.
+        """
+        if not self.low <= value <= self.high:
+            remedy = f"expects {self.low:g} .. {self.high:g} {self.unit}".rstrip()
+            raise InputError(where, field, value, remedy)
+        return value

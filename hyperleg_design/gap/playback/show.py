@@ -189,17 +189,10 @@ def _values(one: Effect, location: str, subject: Subject, settings: Sequence[str
             remedy = f"expects PARAMETER=VALUE; {meant(name, known)}"
             raise InputError("set", setting, None, remedy)
         try:
-            values[known[name]] = float(text)
+            value = float(text)
         except ValueError:
             raise InputError("set", name, text, "expects a number") from None
-        parameter = one.parameters[known[name]]
-        if not parameter.low <= values[known[name]] <= parameter.high:
-            raise InputError(
-                "set",
-                name,
-                text,
-                f"expects {parameter.low:g} .. {parameter.high:g} {parameter.unit}".rstrip(),
-            )
+        values[known[name]] = one.parameters[known[name]].checked(value, "set", name)
     return values
 
 
