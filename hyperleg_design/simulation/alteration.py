@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 def limited(
     torque: np.ndarray,
     speed: np.ndarray,
-    peak: np.ndarray,
-    stall: np.ndarray,
-    free: np.ndarray,
+    peak: np.ndarray | float,
+    stall: np.ndarray | float,
+    free: np.ndarray | float,
     voltage: np.ndarray | float = 1.0,
 ) -> np.ndarray:
     """Bring torques of motors within their peak torque and DC-motor line; all broadcast.

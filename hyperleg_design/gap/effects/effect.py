@@ -166,12 +166,8 @@ class Effect(ABC):
 
     def _sized(self, sizes: Iterable[float], location: str, subject: Subject) -> np.ndarray:
         """Sizes of the parameters at a place, of those that are shares of its strength."""
-        return np.array(
-            [
-                size * self.strength(location, subject) if parameter.of_strength else size
-                for size, parameter in zip(sizes, self.parameters, strict=True)
-            ]
-        )
+        shares = [parameter.of_strength for parameter in self.parameters]
+        return np.array(list(sizes)) * np.where(shares, self.strength(location, subject), 1.0)
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """Scale of priors and of finite differences at a place of a robot.
@@ -197,16 +193,12 @@ class Effect(ABC):
             Values `(parameters,)`.
         """
         values = self.nulls
-        for place, (parameter, usual) in enumerate(
-            zip(self.parameters, self.usual(location, subject), strict=True)
+        for k, (one, usual) in enumerate(
+            zip(self.parameters, self.usual(location, subject).tolist(), strict=True)
         ):
-            if not parameter.shape:
-                above = min(parameter.null + size * float(usual), parameter.high)
-                values[place] = (
-                    above
-                    if above > parameter.null
-                    else max(parameter.null - size * float(usual), parameter.low)
-                )
+            if not one.shape:
+                above = min(one.null + size * usual, one.high)
+                values[k] = above if above > one.null else max(one.null - size * usual, one.low)
         return values
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:

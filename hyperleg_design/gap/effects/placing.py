@@ -16,6 +16,7 @@ constant is; so do joint torques.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import compress
 
 import numpy as np
 
@@ -49,11 +50,7 @@ def driven_motors(subject: Subject) -> tuple[str, ...]:
         Their names.
     """
     if subject.one_to_one:
-        return tuple(
-            name
-            for name, passive in zip(subject.motors, subject.passive, strict=True)
-            if not passive
-        )
+        return tuple(compress(subject.motors, ~subject.passive))
     return subject.motors
 
 
@@ -113,12 +110,8 @@ def before_measurement(
         if is_measured(signals, motor):
             rows.setdefault("drive", _rows(change, len(signals.subject.motors)))[:, motor] += change
         else:
-            _add(
-                rows.setdefault("motion", _rows(change, len(signals.subject.joints))),
-                signals,
-                motor,
-                -change,
-            )
+            moved = rows.setdefault("motion", _rows(change, len(signals.subject.joints)))
+            _add(moved, signals, motor, -change)
     return {residual_name: values.swapaxes(1, 2) for residual_name, values in rows.items()}
 
 
@@ -295,11 +288,7 @@ def motor_strength(subject: Subject, motor: int) -> float:
         return float(subject.torque_limit[motor])
     column = np.abs(subject.joint_from_motor[:, motor])
     used = column > 0
-    return (
-        float(np.max(joint_strength(subject)[used] / column[used], initial=1e-3))
-        if used.any()
-        else 1e-3
-    )
+    return float(np.max(joint_strength(subject)[used] / column[used], initial=1e-3))
 
 
 def motor_strengths(subject: Subject) -> np.ndarray:

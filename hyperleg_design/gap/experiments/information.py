@@ -143,9 +143,9 @@ def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np
                 rows[name][row, :, columns] = kept.T / scales[name][row]
     total = np.zeros((blocks.columns, blocks.columns))
     for part in rows.values():
-        for columns in part:
-            used = np.flatnonzero(np.any(columns != 0, 0))
-            total[np.ix_(used, used)] += columns[:, used].T.astype(float) @ columns[:, used]
+        for told in part:
+            used = np.flatnonzero(np.any(told != 0, 0))
+            total[np.ix_(used, used)] += told[:, used].T.astype(float) @ told[:, used]
     return total * (signals.step * every / (2 * NOISE_TIME))
 
 

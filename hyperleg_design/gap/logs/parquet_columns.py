@@ -62,14 +62,10 @@ def parquet_columns(
     if not rows:
         raise InputError(path.name, "", None, "is an empty log: it has no rows")
     others = [c for c in schema.names if c not in wanted and not c.startswith("__")]
-    remarks = (
-        [
-            f"columns that the format does not know were left out: "
-            f"{', '.join(others[:8])}{' ...' if len(others) > 8 else ''}"
-        ]
-        if others
-        else []
-    )
+    remarks = []
+    if others:
+        first = ", ".join(others[:8]) + (" ..." if len(others) > 8 else "")
+        remarks.append(f"columns that the format does not know were left out: {first}")
     chosen, size = chosen_blocks(rows, len(wanted)), blocks.BLOCK_ROWS
     parts: dict[str, list[np.ndarray]] = {c: [] for c in wanted}
     start = 0

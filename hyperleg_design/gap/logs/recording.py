@@ -24,6 +24,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.result import Evaluation
 from hyperleg_design.evaluation.rollout import Trial
+from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.robot.models import quaternion_matrix
@@ -162,23 +163,20 @@ def log_of_signals(
         raise InputError(name, "samples", rows, "ended at once: a log needs two samples at least")
     model, limbs = actuation_model(design), len(layout.limbs)
     found = _as_told(model, limbs, found)
-    signals = (
-        _joint_signals(layout, found)
-        | _motor_signals(design, layout, found)
-        | _base_signals(found, time_step)
-    )
-    signals |= _contact_signals(layout, found["pad_force"])
+    known = {kind: found[n] for kind, n in JOINT_SIGNALS.items() if n in found}
+    signals = columns_of(known, layout.joints) | _motor_signals(design, layout, found)
+    signals |= _base_signals(found, time_step) | _contact_signals(layout, found["pad_force"])
     pairs = np.tile(np.column_stack([model.stiffness, model.damping]), (limbs, 1)).tolist()
     gains = {joint: (k, d) for joint, (k, d) in zip(layout.joints, pairs, strict=True)}
     constants = dict(zip(layout.motors, _torque_constants(design, layout).tolist(), strict=True))
-    known: dict[str, Any] = {
+    metadata: dict[str, Any] = {
         "robot": design.name,
         "base": "floating",
         "gains": gains,
         "torque_constant": constants,
         "gravity": (0, 0, -GRAVITY),
     }
-    return Log(name, np.arange(rows) * time_step, signals, Metadata(**(known | dict(said))))
+    return Log(name, np.arange(rows) * time_step, signals, Metadata(**(metadata | dict(said))))
 
 
 def _as_told(
@@ -202,23 +200,14 @@ def _as_told(
     return found
 
 
-def _joint_signals(layout: Layout, found: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    return {
-        f"{kind}/{joint}": found[n][:, i]
-        for kind, n in JOINT_SIGNALS.items()
-        if n in found
-        for i, joint in enumerate(layout.joints)
-    }
-
-
 def _motor_signals(
     design: RobotDesign, layout: Layout, found: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
     columns = {
         "motor_torque": found["motor_torque"],
         "motor_current": found["motor_torque"] / _torque_constants(design, layout),
+        "motor_velocity": found["motor_velocity"],
     }
-    columns["motor_velocity"] = found["motor_velocity"]
     if "motor_command" in found:
         columns = {"motor_torque_command": found["motor_command"], **columns}
     elif "joint_target" in found:
@@ -227,11 +216,7 @@ def _motor_signals(
         wanted = model.stiffness * error - model.damping * found["joint_velocity"].reshape(legs)
         command = (wanted @ model.motor_from_joint.T).reshape(len(wanted), -1)
         columns = {"motor_torque_command": command, **columns}
-    return {
-        f"{kind}/{motor}": values[:, i]
-        for kind, values in columns.items()
-        for i, motor in enumerate(layout.motors)
-    }
+    return columns_of(columns, layout.motors)
 
 
 def _torque_constants(design: RobotDesign, layout: Layout) -> np.ndarray:
@@ -255,14 +240,7 @@ def _base_signals(found: Mapping[str, np.ndarray], time_step: float) -> dict[str
     }
     if "base_angular_velocity" in found:
         parts = {"gyro": _at_its_time(found["base_angular_velocity"]), **parts}
-    signals = {
-        f"{kind}/{axis}": values[:, i]
-        for kind, values in parts.items()
-        for i, axis in enumerate("xyz")
-    }
-    return signals | {
-        f"base_orientation/{axis}": orientation[:, i] for i, axis in enumerate("wxyz")
-    }
+    return columns_of(parts, "xyz") | columns_of({"base_orientation": orientation}, "wxyz")
 
 
 def _at_its_time(velocity: np.ndarray) -> np.ndarray:

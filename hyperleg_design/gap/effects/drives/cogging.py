@@ -127,15 +127,8 @@ class Cogging(MotorTorque):
         # what gravity, friction and inertia that are off would leave is taken out of residual and
         # waves alike
         turned, speed = signals.position[:, main], signals.velocity[:, main]
-        other = [
-            np.ones_like(turned),
-            turned,
-            np.cos(turned),
-            np.sin(turned),
-            speed,
-            sliding(signals)[:, main],
-            signals.acceleration[:, main],
-        ]
+        gravity = [np.ones_like(turned), turned, np.cos(turned), np.sin(turned)]
+        other = [*gravity, speed, sliding(signals)[:, main], signals.acceleration[:, main]]
         beside = np.linalg.qr(np.stack(other, -1)[known])[0]
         slow = float(np.median(np.abs(motor_velocity(signals, motor)[known])))
         orders = ORDERS[(ORDERS <= ALWAYS) | (ORDERS * slow <= 2 * np.pi * HIGHEST)]

@@ -93,11 +93,8 @@ class CommandDelay(Effect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         delay, late = np.atleast_2d(np.asarray(values, float)).T
         targets = late >= TARGETS
-        moved = (
-            _moved(signals, np.where(targets, delay, 0.0))
-            if targets.any() and _told(signals, location)
-            else None
-        )
+        by_targets = targets.any() and _told(signals, location)
+        moved = _moved(signals, np.where(targets, delay, 0.0)) if by_targets else None
         changes, control = {}, {}
         for motor, name in enumerate(signals.subject.motors):
             if location not in (ROBOT, name) or not is_commanded(signals, motor):
@@ -198,15 +195,10 @@ class _Late(Live):
 
     def prepare(self) -> None:
         one = self.alteration
-        self.of_motors = _Past(
-            one.delay, self.count, self.step, [self.machine.motor(name) for name in one.motors]
-        )
-        self.of_joints = _Past(
-            one.target_delay,
-            self.count,
-            self.step,
-            [self.machine.joint(name) for name in one.joints],
-        )
+        motors = [self.machine.motor(name) for name in one.motors]
+        joints = [self.machine.joint(name) for name in one.joints]
+        self.of_motors = _Past(one.delay, self.count, self.step, motors)
+        self.of_joints = _Past(one.target_delay, self.count, self.step, joints)
         self.commands, self.commands_begun = self.of_motors.values, self.of_motors.begun
         self.targets, self.targets_begun = self.of_joints.values, self.of_joints.begun
 

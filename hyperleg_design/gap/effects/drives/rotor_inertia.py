@@ -63,12 +63,8 @@ class RotorInertia(MotorTorque):
             motor = subject.motors.index(location)
             column = np.abs(subject.joint_from_motor[:, motor])
             main = int(np.argmax(column))
-            spreads[location] = np.array(
-                [
-                    OF_ROTOR * subject.rotor_inertia[motor]
-                    + OF_JOINT * inertia[main] / max(float(column[main]), 1e-9) ** 2
-                ]
-            )
+            of_joint = OF_JOINT * inertia[main] / max(float(column[main]), 1e-9) ** 2
+            spreads[location] = np.array([OF_ROTOR * subject.rotor_inertia[motor] + of_joint])
         return spreads
 
     def _torque(self, signals: Signals, motor: int, inertia: np.ndarray) -> np.ndarray:

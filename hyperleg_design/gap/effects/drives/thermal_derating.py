@@ -60,22 +60,15 @@ class ThermalDerating(MotorTorque):
 
     @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        known = {m: log.column(f"motor_temperature/{m}") for m in log.motors}
-        rise = {
-            m: float(np.nanmax(values) - np.nanmin(values))
-            for m, values in known.items()
-            if log.has("motor_temperature", m)
-        }
+        logged = [m for m in log.motors if log.has("motor_temperature", m)]
+        known = {m: log.column(f"motor_temperature/{m}") for m in logged}
+        rise = {m: float(np.nanmax(values) - np.nanmin(values)) for m, values in known.items()}
         if not rise:
             return Excitation(self.identifier, False, (), "no motor temperature")
         warm = tuple(m for m, value in rise.items() if value >= WARMING)
-        why = f"temperature changes by {max(rise.values()):.0f} K"
-        return Excitation(
-            self.identifier,
-            bool(warm) and bool(motion.torque.any()),
-            warm,
-            why if warm else f"{why}; {WARMING:.0f} K are needed",
-        )
+        needed = "" if warm else f"; {WARMING:.0f} K are needed"
+        why = f"temperature changes by {max(rise.values()):.0f} K{needed}"
+        return Excitation(self.identifier, bool(warm) and bool(motion.torque.any()), warm, why)
 
     def _torque(self, signals: Signals, motor: int, coefficient: np.ndarray) -> np.ndarray:
         return coefficient * (rise(signals, motor) * given(signals, motor))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Set
+from itertools import compress
 from typing import ClassVar
 
 import numpy as np
@@ -50,11 +51,7 @@ class LoadDependentFriction(JointTorque):
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints that some motor moves."""
-        return tuple(
-            name
-            for name, row in zip(subject.joints, subject.joint_from_motor, strict=True)
-            if row.any()
-        )
+        return tuple(compress(subject.joints, subject.joint_from_motor.any(1)))
 
     def _torque(self, signals: Signals, joint: int, coefficient: np.ndarray) -> np.ndarray:
         subject = signals.subject

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from itertools import compress
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -104,11 +105,7 @@ class OwnInertiaEffect(InertialEffect):
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Moving links that have a mass."""
-        return tuple(
-            name
-            for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True)
-            if own[0] > 0
-        )
+        return tuple(compress(subject.tree.links, subject.tree.link_inertial[:, 0] > 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,11 +152,8 @@ def fitted(signals: Signals, link: str, part: slice) -> np.ndarray | None:
     square = columns.T @ columns
     if not len(values) or np.trace(square) <= 0:
         return None
-    return np.asarray(
-        np.linalg.solve(
-            square + RIDGE * np.trace(square) / 4 * np.eye(len(square)), columns.T @ values
-        )
-    )
+    ridge = RIDGE * np.trace(square) / 4 * np.eye(len(square))
+    return np.asarray(np.linalg.solve(square + ridge, columns.T @ values))
 
 
 def least_mass(subject: Subject, link: str) -> float:

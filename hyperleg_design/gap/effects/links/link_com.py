@@ -50,13 +50,8 @@ class LinkCom(OwnInertiaEffect):
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Of the moved link less the link."""
         mass, com, inertia = mass_properties(own)
-        return np.stack(
-            [
-                inertial_parameters(mass, com + shift, inertia)
-                - inertial_parameters(mass, com, inertia)
-                for shift in values
-            ]
-        )
+        as_given = inertial_parameters(mass, com, inertia)
+        return np.stack([inertial_parameters(mass, com + v, inertia) - as_given for v in values])
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:

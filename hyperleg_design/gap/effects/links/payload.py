@@ -34,7 +34,7 @@ INWARD, OUTERMOST = 3.0, 2.0
 on a base (assumed: loads hang on hands and lie on backs) [nat]."""
 MASS_SOURCE = "UR10e logs with 2.8 kg; tools and batteries, 20 % of what the link moves (assumed)"
 COM_X_SOURCE = "centre of mass in the link's frame: a hand's breadth (assumed)"
-GYRATION_SQUARED_SOURCE = "of a body 10 cm across (assumed)"
+GYRATION_SOURCE = "of a body 10 cm across (assumed)"
 
 
 class Payload(InertialEffect):
@@ -53,9 +53,7 @@ class Payload(InertialEffect):
         Parameter("com_x", "m", 0.0, -1.0, 1.0, 0.05, COM_X_SOURCE, shape=True),
         Parameter("com_y", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),
         Parameter("com_z", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),
-        Parameter(
-            "gyration_squared", "m^2", 0.0, 0.0, 0.1, 0.0025, GYRATION_SQUARED_SOURCE, shape=True
-        ),
+        Parameter("gyration_squared", "m^2", 0.0, 0.0, 0.1, 0.0025, GYRATION_SOURCE, shape=True),
     )
 
     @override

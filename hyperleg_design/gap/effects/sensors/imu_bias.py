@@ -90,12 +90,8 @@ class ImuBias(Effect):
             spin = base.angular_velocity - (subject.imu_rotation @ one[:3] if by_gyro else 0.0)
             force = base.specific_force
             if by_accelerometer:
-                force = (
-                    force
-                    - subject.imu_rotation @ one[3:]
-                    + centripetal(base.angular_velocity)
-                    - centripetal(spin)
-                )
+                force = force - subject.imu_rotation @ one[3:]
+                force = force + centripetal(base.angular_velocity) - centripetal(spin)
             true = dataclasses.replace(base, angular_velocity=spin, specific_force=force)
             rows[number] = rigid.inverse_dynamics(subject, *motion, true) - needed
             if wrench is not None:

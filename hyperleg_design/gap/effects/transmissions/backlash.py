@@ -67,13 +67,9 @@ class Backlash(MotorEffect):
         bounce = np.log(slack.RESTITUTION)
         ratio = abs(bounce) / np.hypot(np.pi, bounce)
         damping = 2 * ratio * machine.rotor(subject, motor) * 2 * np.pi * STIFFEST
-        values = np.asarray(values, float)
-        return Belt(
-            location,
-            play=values[..., 0] * subject.motor_over_joint(motor),
-            damping=float(damping),
-            side=values[..., 1],
-        )
+        angle, side, *_ = np.moveaxis(np.asarray(values, float), -1, 0)
+        play = angle * subject.motor_over_joint(motor)
+        return Belt(location, play=play, damping=float(damping), side=side)
 
     @override
     def fixed(self, values: np.ndarray) -> np.ndarray:

@@ -89,11 +89,9 @@ class TransmissionElasticity(MotorEffect):
                 moved[mine] = belt.stretch(
                     signals, own, motor, *(v[mine] for v in (compliance, damping_ratio, stiffening))
                 )
-        seen = (
-            None
-            if told is needed
-            else belt.stretch(signals, told, motor, compliance, damping_ratio, stiffening)
-        )
+        seen = None
+        if told is not needed:
+            seen = belt.stretch(signals, told, motor, compliance, damping_ratio, stiffening)
         return belt.trace(signals, motor, moved, side, seen, behind)
 
     @override

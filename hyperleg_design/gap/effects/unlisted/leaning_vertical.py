@@ -66,15 +66,10 @@ class LeaningVertical(Effect):
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        subject, rest = signals.subject, np.zeros_like(signals.position)
-        needed = np.stack(
-            [
-                inverse_dynamics(
-                    replace(subject, gravity=across), signals.position, rest, rest, rotors=False
-                )
-                for across in _across(subject.gravity)
-            ]
-        )
+        rest = np.zeros_like(signals.position)
+        motion = signals.position, rest, rest
+        leaning = (replace(signals.subject, gravity=g) for g in _across(signals.subject.gravity))
+        needed = np.stack([inverse_dynamics(one, *motion, rotors=False) for one in leaning])
         return {"motion": np.tensordot(np.atleast_2d(values), needed, 1)}
 
     @override

@@ -21,8 +21,15 @@ import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.gap.logs import blocks
+from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log
-from hyperleg_design.gap.logs.readers.source import FOLDER_FILE, beside, joint_names, made_log
+from hyperleg_design.gap.logs.readers.source import (
+    FOLDER_FILE,
+    beside,
+    joint_names,
+    lacks,
+    made_log,
+)
 from hyperleg_design.gap.logs.readers.units import FACTORS
 from hyperleg_design.reading import read_json
 
@@ -77,18 +84,9 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
     remarks.append("time stamps are frame numbers over the frame rate, not measured")
     if read < rows:
         remarks.append(blocks.shortened(rows, read))
-    lacking = [
-        w
-        for w, f in (
-            ("targets", "action"),
-            ("velocities", "observation.velocity"),
-            ("torques", "observation.effort"),
-        )
-        if f not in features
-    ]
-    remarks.append(
-        f"the source lacks {', '.join([*lacking, *([] if said.get('gains') else ['gains'])])}"
-    )
+    lacking = lacks({signal for feature, signal in SIGNALS.items() if feature in features})
+    gains = [] if said.get("gains") else ["gains"]
+    remarks.append(f"the source lacks {', '.join([*lacking, *gains])}")
     made = []
     for episode in np.unique(table["episode_index"]):
         mine = table["episode_index"] == episode
@@ -98,23 +96,13 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
         for feature, signal in SIGNALS.items():
             if feature in table:
                 factors = scale if signal != "joint_torque" else np.ones(len(joints))
-                signals |= {
-                    f"{signal}/{joint}": table[feature][mine][:, i] * factors[i]
-                    for i, joint in enumerate(joints)
-                }
+                values = table[feature][mine][:, : len(joints)]
+                signals |= columns_of({signal: values * factors}, joints)
         name = f"{path.name}_{int(episode):06d}"
         extra = {key: info[key] for key in ("robot_type", "fps", "codebase_version") if key in info}
-        made.append(
-            made_log(
-                path,
-                name,
-                table["timestamp"][mine],
-                signals,
-                {"extra": {**extra, "episode": int(episode)}},
-                said,
-                remarks,
-            )
-        )
+        extra["episode"] = int(episode)
+        time = table["timestamp"][mine]
+        made.append(made_log(path, name, time, signals, {"extra": extra}, said, remarks))
     if not made:
         raise InputError(path.name, "", None, "is an empty log: no episode has two frames")
     return made

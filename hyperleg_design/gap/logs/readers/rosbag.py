@@ -103,11 +103,8 @@ def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
         own, values, _ = stream.arrays()
         is_target = kind == JOINT_STATE and _commands(topic)
         if is_target:
-            values = {
-                c.replace("position/", "position_target/", 1): v
-                for c, v in values.items()
-                if c.startswith("position/")
-            }
+            positions = {c: v for c, v in values.items() if c.startswith("position/")}
+            values = {c.replace("position", "position_target", 1): v for c, v in positions.items()}
         new = {column: v for column, v in values.items() if column not in signals}
         signals |= onto(time, own, new, hold=is_target)
         remarks.append(
@@ -194,12 +191,11 @@ def _decoded(message: Any) -> tuple[float, tuple[str, ...], np.ndarray]:
     match message.__msgtype__:
         case kind if kind == IMU:
             o = message.orientation
+            spin, felt = _xyz(message.angular_velocity), _xyz(message.linear_acceleration)
             parts = [
                 _measured([o.w, o.x, o.y, o.z], message.orientation_covariance),
-                _measured(_xyz(message.angular_velocity), message.angular_velocity_covariance),
-                _measured(
-                    _xyz(message.linear_acceleration), message.linear_acceleration_covariance
-                ),
+                _measured(spin, message.angular_velocity_covariance),
+                _measured(felt, message.linear_acceleration_covariance),
             ]
             return stamp, IMU_COLUMNS, np.concatenate(parts)
         case kind if kind == BATTERY:

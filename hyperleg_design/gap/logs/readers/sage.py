@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
+from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers.source import beside, joint_names, made_log
 from hyperleg_design.gap.logs.readers.timebase import onto, sorted_stream
@@ -88,17 +89,13 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
             )
     elif "gains" not in said:
         remarks.append("the source lacks the controller's gains; say `gains` in a side file")
-    signals = {
-        f"position/{joint}": state["positions"][:, i] * scale[i] for i, joint in enumerate(joints)
-    }
+    signals = columns_of({"position": state["positions"] * scale}, joints)
     if "velocities" in state:
-        signals |= {
-            f"velocity/{joint}": state["velocities"][:, i] for i, joint in enumerate(joints)
-        }
+        signals |= columns_of({"velocity": state["velocities"]}, joints)
     if "torques" in state:
         torque = state["torques"]
         if np.nanmin(torque) < 0:
-            signals |= {f"joint_torque/{joint}": torque[:, i] for i, joint in enumerate(joints)}
+            signals |= columns_of({"joint_torque": torque}, joints)
         else:
             remarks.append("torques have no sign (the size of a current) and were left out")
     if (folder / CONTROL).is_file():
@@ -108,10 +105,7 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
             raise InputError(
                 f"{folder.name}/{CONTROL}", "positions", control["positions"].shape[1], remedy
             )
-        targets = {
-            f"position_target/{joint}": control["positions"][:, i] * scale[i]
-            for i, joint in enumerate(joints)
-        }
+        targets = columns_of({"position_target": control["positions"] * scale}, joints)
         if len(own) == len(time) and np.array_equal(own, time):
             signals |= targets
         else:
