@@ -64,8 +64,8 @@ def parquet_columns(
     others = [c for c in schema.names if c not in wanted and not c.startswith("__")]
     remarks = []
     if others:
-        first = ", ".join(others[:8]) + (" ..." if len(others) > 8 else "")
-        remarks.append(f"columns that the format does not know were left out: {first}")
+        some = ", ".join(others[:8]) + (" ..." if len(others) > 8 else "")
+        remarks.append(f"columns that the format does not know were left out: {some}")
     chosen, size = chosen_blocks(rows, len(wanted)), blocks.BLOCK_ROWS
     parts: dict[str, list[np.ndarray]] = {c: [] for c in wanted}
     start = 0
