@@ -99,8 +99,8 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
                 values = table[feature][mine][:, : len(joints)]
                 signals |= columns_of({signal: values * factors}, joints)
         name = f"{path.name}_{int(episode):06d}"
-        extra = {key: info[key] for key in ("robot_type", "fps", "codebase_version") if key in info}
-        extra["episode"] = int(episode)
+        about: tuple[str, ...] = ("robot_type", "fps", "codebase_version")
+        extra = {key: info[key] for key in about if key in info} | {"episode": int(episode)}
         time = table["timestamp"][mine]
         made.append(made_log(path, name, time, signals, {"extra": extra}, said, remarks))
     if not made:

@@ -56,8 +56,8 @@ def read_pace(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
         raise InputError(path.name, "dof_pos", shape, f"expects ({len(time)}, joints)")
     found = content.get("joint_names")
     named = isinstance(found, list | tuple) and len(found) == shape[1]
-    names = found if named else [f"joint_{i}" for i in range(shape[1])]
-    joints = joint_names(said, [str(n) for n in names], path.name)
+    names = list(map(str, found or ())) if named else [f"joint_{i}" for i in range(shape[1])]
+    joints = joint_names(said, names, path.name)
     signals: dict[str, np.ndarray] = {}
     for key, signal in SIGNALS.items():
         if key in content:
