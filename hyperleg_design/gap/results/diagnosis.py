@@ -96,6 +96,22 @@ class Place:
     """Of the squared excess; in a regime, of that of its place."""
 
 
+def residual_shape(shape: str, location: str, says: str, closed_beyond: float) -> dict[str, Any]:
+    """Make one of the shapes that a diagnosis lists.
+
+    Args:
+        shape: its name.
+        location: joint, motor, foot or sensor.
+        says: what was seen, in a sentence that goes on from the location.
+        closed_beyond: share of the gap beyond all causes that it explains.
+
+    Returns:
+        Its fields.
+    """
+    told = {"shape": shape, "location": location, "says": says, "closed_beyond": closed_beyond}
+    return told | {"gain": 0.0}
+
+
 @dataclass(frozen=True)
 class Diagnosis:
     """The answer of a diagnosis: verdict, gap, causes, rivals, and what to do next."""
