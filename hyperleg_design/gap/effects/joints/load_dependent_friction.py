@@ -51,7 +51,7 @@ class LoadDependentFriction(JointTorque):
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints that some motor moves."""
-        return tuple(compress(subject.joints, subject.joint_from_motor.any(1)))
+        return tuple(compress(subject.joints, np.any(subject.joint_from_motor, 1).tolist()))
 
     def _torque(self, signals: Signals, joint: int, coefficient: np.ndarray) -> np.ndarray:
         subject = signals.subject
