@@ -49,12 +49,8 @@ def disagreements(logs: Sequence[Log]) -> dict[str, list[Finding]]:
         usual_value = _majority([value for value in values if value])
         for log, value in zip(logs, values, strict=True):
             if value and value != usual_value:
-                note(
-                    log,
-                    "",
-                    f"declares another {key} than the other logs",
-                    "correct the metadata, or diagnose it apart",
-                )
+                text = f"declares another {key} than the other logs"
+                note(log, "", text, "correct the metadata, or diagnose it apart")
     sizes = [_sizes(log) for log in logs]
     for column in sorted(set().union(*sizes)):
         known = [size[column] for size in sizes if column in size]

@@ -22,17 +22,13 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, NOTE, SEVERITIES, WARNING, Finding
 from hyperleg_design.writing import plain
 
-BOUNDED = (
-    "joint_torque",
-    "motor_torque",
-    "motor_torque_command",
-    "motor_current",
-    "motor_velocity",
-    "velocity",
-    "gyro",
-    "accelerometer",
-)
+IMU = ("gyro", "accelerometer")
+SENSED = ("joint_torque", "motor_torque", "motor_current", "motor_velocity", *IMU)
+"""Signals of sensors that never stay as they are."""
+BOUNDED = (*SENSED, "motor_torque_command", "velocity")
 """Signals in which a bound that clips is looked for; positions and targets may well rest at one."""
+SLOW = ("position_target", "motor_temperature", "battery_voltage", "motor_torque_command")
+"""Signals that are often given at lower rates than others."""
 
 
 @dataclass(frozen=True)
@@ -168,27 +164,15 @@ def _required(log: Log, subject: Subject | None) -> Iterator[Finding]:
     )
     if targets and not gains:
         severity = WARNING if torques or currents else ERROR
-        yield Finding(
-            severity,
-            "position_target",
-            "targets without gains say nothing of torques",
-            "declare `gains` in the metadata",
-        )
+        text = "targets without gains say nothing of torques"
+        yield Finding(severity, "position_target", text, "declare `gains` in the metadata")
     if currents and not constants:
         severity = WARNING if torques or targets else ERROR
-        yield Finding(
-            severity,
-            "motor_current",
-            "currents without torque constants say nothing of torques",
-            "declare `torque_constant`",
-        )
+        text = "currents without torque constants say nothing of torques"
+        yield Finding(severity, "motor_current", text, "declare `torque_constant`")
     if not targets and not torques and not currents:
-        yield Finding(
-            ERROR,
-            "",
-            "neither targets nor torques nor currents",
-            "log position_target with gains, motor_torque or motor_current",
-        )
+        remedy = "log position_target with gains, motor_torque or motor_current"
+        yield Finding(ERROR, "", "neither targets nor torques nor currents", remedy)
 
 
 def _clock(sampling: Sampling) -> Iterator[Finding]:
@@ -201,22 +185,14 @@ def _clock(sampling: Sampling) -> Iterator[Finding]:
         return
     if sampling.duration < RULES.clock.shortest or sampling.ticks < RULES.clock.few:
         text = f"is short: {sampling.duration:.2g} s, {sampling.ticks} ticks"
-        yield Finding(
-            WARNING,
-            "t",
-            text,
-            f"record {RULES.clock.shortest:.0f} s or more; 20 s leave enough to hold out",
-        )
+        remedy = f"record {RULES.clock.shortest:.0f} s or more; 20 s leave enough to hold out"
+        yield Finding(WARNING, "t", text, remedy)
     if sampling.rate < RULES.clock.slow:
         text = f"{sampling.rate:.3g} Hz: friction at reversals and delays blur"
         yield Finding(WARNING, "t", text, "log at 100 Hz or more")
     if sampling.jitter > RULES.clock.jitter:
-        yield Finding(
-            NOTE,
-            "t",
-            f"the clock jitters by {100 * sampling.jitter:.0f} % of a step",
-            "stamps are used as they are",
-        )
+        text = f"the clock jitters by {100 * sampling.jitter:.0f} % of a step"
+        yield Finding(NOTE, "t", text, "stamps are used as they are")
     if sampling.dropouts > RULES.clock.dropouts or sampling.longest > 10 * sampling.step:
         text = (
             f"{100 * sampling.dropouts:.1f} % of the time is lost in dropouts, the longest "
@@ -234,46 +210,20 @@ def _columns(columns: tuple[Column, ...], sampling: Sampling) -> Iterator[Findin
             yield Finding(WARNING, one.column, "holds no values", "it counts as missing")
             continue
         if one.missing > RULES.clock.missing:
-            yield Finding(
-                WARNING,
-                one.column,
-                f"{100 * one.missing:.1f} % of its values are missing",
-                "the ticks beside them are left out",
-            )
+            text = f"{100 * one.missing:.1f} % of its values are missing"
+            yield Finding(WARNING, one.column, text, "the ticks beside them are left out")
         if one.rate < 0.75 * sampling.rate and not one.constant:
             how = "held" if one.held > 1 else "given"
             text = f"is {how} at {one.rate:.3g} Hz in a log of {sampling.rate:.3g} Hz"
-            severity = (
-                NOTE
-                if kind
-                in (
-                    "position_target",
-                    "motor_temperature",
-                    "battery_voltage",
-                    "motor_torque_command",
-                )
-                else WARNING
-            )
+            severity = NOTE if kind in SLOW else WARNING
             yield Finding(severity, one.column, text, "it counts at its own rate")
         if kind in BOUNDED and one.saturated > RULES.clock.saturated:
             text = (
                 f"sits at a bound, {one.low:.4g} or {one.high:.4g}, for "
                 f"{100 * one.saturated:.1f} % of the log"
             )
-            yield Finding(
-                WARNING,
-                one.column,
-                text,
-                "a sensor's range or a drive's limit: effects beyond it do not show",
-            )
-        if one.constant and kind in (
-            "joint_torque",
-            "motor_torque",
-            "motor_current",
-            "gyro",
-            "accelerometer",
-            "motor_velocity",
-        ):
-            yield Finding(
-                WARNING, one.column, f"never changes from {one.low:.4g}", "is the sensor connected?"
-            )
+            remedy = "a sensor's range or a drive's limit: effects beyond it do not show"
+            yield Finding(WARNING, one.column, text, remedy)
+        if one.constant and kind in SENSED:
+            text = f"never changes from {one.low:.4g}"
+            yield Finding(WARNING, one.column, text, "is the sensor connected?")

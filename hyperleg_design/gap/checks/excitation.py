@@ -65,33 +65,15 @@ def motion_of(log: Log, subject: Subject | None) -> Motion:
     gains = log.metadata.gains or (
         dict(zip(subject.joints, subject.gains, strict=True)) if subject is not None else {}
     )
-    with_gains = np.array(
-        [
-            log.has("position_target", j) and j in gains and np.isfinite(gains[j]).all()
-            for j in joints
-        ],
-        bool,
-    )
+    known = [j in gains and bool(np.isfinite(gains[j]).all()) for j in joints]
+    with_gains = np.array([log.has("position_target", j) for j in joints], bool) & known
     measured = anywhere("joint_torque", "motor_torque", "motor_current")
     asked = with_gains | anywhere("motor_torque_command")
     commands = np.array([_content(_asked(log, joint), rate, noisy=False) for joint in joints])
-    return Motion(
-        np.array(joints),
-        reversals,
-        spread,
-        np.nanmax(position, 0) - np.nanmin(position, 0),
-        np.array(
-            [
-                _content(position[:, i], rate) if moving[:, i].any() else 0.0
-                for i in range(len(joints))
-            ]
-        ),
-        commands,
-        slow,
-        measured | asked,
-        measured,
-        asked,
-    )
+    content = np.array([_content(q, rate) for q in position.T]) * moving.any(0)
+    swing = np.nanmax(position, 0) - np.nanmin(position, 0)
+    facts = reversals, spread, swing, content, commands, slow
+    return Motion(np.array(joints), *facts, measured | asked, measured, asked)
 
 
 def _asked(log: Log, joint: str) -> np.ndarray:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.checks.check import Check, check_log
+from hyperleg_design.gap.checks.check import check_log
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers import open_log
 from hyperleg_design.gap.model.subject import Subject
@@ -31,8 +31,6 @@ class Intake:
     subject: Subject
     tests: tuple[Signals, ...]
     references: tuple[Signals, ...]
-    checks: tuple[Check, ...]
-    """Of all logs, tests first."""
 
 
 def take_in(
@@ -49,7 +47,7 @@ def take_in(
         references: of the healthy robot.
 
     Returns:
-        The robot, and checks and signals of all logs.
+        The robot, and the signals of all logs.
 
     Raises:
         InputError: no log to test, a log that cannot be opened or is not fit, a robot that does not
@@ -57,13 +55,10 @@ def take_in(
     """
     tests, healthy = open_logs(sources, references)
     subject = load_subject(robot or None, [*tests, *healthy])
-    checks = [_checked(log, subject) for log in (*tests, *healthy)]
-    return Intake(
-        subject,
-        tuple(condition(log, subject) for log in tests),
-        tuple(condition(log, subject) for log in healthy),
-        tuple(checks),
-    )
+    for log in (*tests, *healthy):
+        check_log(log, subject).refuse()
+    ready = (tuple(condition(log, subject) for log in logs) for logs in (tests, healthy))
+    return Intake(subject, *ready)
 
 
 def open_logs(
@@ -110,9 +105,3 @@ def _same(first: Log, second: Log) -> bool:
             for column, values in first.signals.items()
         )
     )
-
-
-def _checked(log: Log, subject: Subject) -> Check:
-    check = check_log(log, subject)
-    check.refuse()
-    return check

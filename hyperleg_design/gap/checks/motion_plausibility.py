@@ -52,24 +52,14 @@ def implausible_motion(log: Log) -> Iterator[Finding]:
         if not moving[i] or not np.isfinite(fit[i]):
             continue
         if np.nanstd(integral[:, i]) == 0:
-            yield Finding(
-                ERROR,
-                column,
-                "never changes though the joint moves",
-                "leave the column out, or mend the sensor",
-            )
+            remedy = "leave the column out, or mend the sensor"
+            yield Finding(ERROR, column, "never changes though the joint moves", remedy)
             continue
         rivals = fitted_correlations(moved, integral[:, i])
         rivals[i] = -1
         best = int(np.nanargmax(rivals)) if np.isfinite(rivals).any() else i
-        unit = next(
-            (
-                text
-                for value, text in units
-                if abs(abs(slope[i]) / value - 1) < RULES.unit.tolerance
-            ),
-            "",
-        )
+        ratio, close = abs(slope[i]), RULES.unit.tolerance
+        unit = next((text for value, text in units if abs(ratio / value - 1) < close), "")
         if abs(fit[i]) < RULES.unit.strange and rivals[best] > RULES.unit.fits:
             text = (
                 f"follows the motion of {joints[best]} (correlation {rivals[best]:.2f}), not "
@@ -77,23 +67,15 @@ def implausible_motion(log: Log) -> Iterator[Finding]:
             )
             yield Finding(ERROR, column, text, "the columns of two joints are swapped: rename them")
         elif fit[i] < -RULES.unit.fits:
-            yield Finding(
-                ERROR,
-                column,
-                "runs against the rate of its position",
-                "flip the sign of one of the two",
-            )
+            text = "runs against the rate of its position"
+            yield Finding(ERROR, column, text, "flip the sign of one of the two")
         elif fit[i] > RULES.unit.strange and unit:
             text = f"is {slope[i]:.3g} times the rate of its position: {unit}"
             yield Finding(ERROR, column, text, "convert to rad and rad/s")
         elif fit[i] > RULES.unit.fits and abs(slope[i] - 1) > RULES.unit.tolerance:
             text = f"is {slope[i]:.3g} times the rate of its position"
-            yield Finding(
-                WARNING,
-                column,
-                text,
-                "is it the motor's, before a reduction? then call it motor_velocity",
-            )
+            remedy = "is it the motor's, before a reduction? then call it motor_velocity"
+            yield Finding(WARNING, column, text, remedy)
         elif fit[i] < RULES.unit.strange:
             text = f"hardly follows the rate of its position (correlation {fit[i]:.2f})"
             yield Finding(
@@ -106,12 +88,8 @@ def _windows(log: Log, joints: list[str]) -> tuple[np.ndarray, np.ndarray]:
     width = max(1, round(RULES.unit.window / log.step))
     position, velocity = log.stack("position", joints), log.stack("velocity", joints)
     steps = np.diff(log.time)[:, None]
-    area = np.concatenate(
-        [
-            np.zeros((1, len(joints))),
-            np.cumsum(np.nan_to_num(0.5 * (velocity[1:] + velocity[:-1])) * steps, 0),
-        ]
-    )
+    parts = np.nan_to_num(0.5 * (velocity[1:] + velocity[:-1])) * steps
+    area = np.concatenate([np.zeros((1, len(joints))), np.cumsum(parts, 0)])
     lost = np.cumsum(~np.isfinite(velocity), 0)
     moved, integral = position[width:] - position[:-width], area[width:] - area[:-width]
     unknown = (lost[width:] > lost[:-width]) | (

@@ -20,6 +20,14 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, NOTE, WARNING, Finding
 from hyperleg_design.gap.signals.smoothing import bridged
 
+LARGEST = {
+    "motor_current": (RULES.unit.largest_current, "mA: convert to A"),
+    "battery_voltage": (RULES.unit.largest_voltage, "mV: convert to V"),
+    "motor_temperature": (RULES.unit.largest_temperature, "kelvin or fahrenheit: convert to degC"),
+    "gyro": (RULES.unit.largest_rate, "deg/s: convert to rad/s"),
+}
+"""By signal, what no robot exceeds, and the unit in which it then is."""
+
 
 def implausible(log: Log, subject: Subject | None = None) -> list[Finding]:
     """Find what does not fit in a log: units, signs, swapped joints, stuck sensors, another robot.
@@ -48,59 +56,28 @@ def _magnitudes(log: Log) -> Iterator[Finding]:
             continue
         largest = float(np.nanmax(np.abs(values)))
         middle = float(np.nanpercentile(np.abs(values), 90))
-        if (
-            kind in ("position", "position_target")
-            and float(np.nanmax(values) - np.nanmin(values)) > RULES.unit.largest_angle
-        ):
-            text = (
-                f"spans {float(np.nanmax(values) - np.nanmin(values)):.3g} rad, two turns or more"
-            )
-            yield Finding(
-                WARNING,
-                column,
-                text,
-                "if it is in degrees, convert to rad; a joint that turns on and on is well",
-            )
-        limit, unit = {
-            "motor_current": (RULES.unit.largest_current, "mA: convert to A"),
-            "battery_voltage": (RULES.unit.largest_voltage, "mV: convert to V"),
-            "motor_temperature": (
-                RULES.unit.largest_temperature,
-                "kelvin or fahrenheit: convert to degC",
-            ),
-            "gyro": (RULES.unit.largest_rate, "deg/s: convert to rad/s"),
-        }.get(kind, (math.inf, ""))
+        span = float(np.nanmax(values) - np.nanmin(values))
+        if kind in ("position", "position_target") and span > RULES.unit.largest_angle:
+            text = f"spans {span:.3g} rad, two turns or more"
+            remedy = "if it is in degrees, convert to rad; a joint that turns on and on is well"
+            yield Finding(WARNING, column, text, remedy)
+        limit, unit = LARGEST.get(kind, (math.inf, ""))
         if middle > limit or (kind == "gyro" and largest > 2 * limit):
-            yield Finding(
-                ERROR,
-                column,
-                f"reaches {largest:.4g}, no such thing in this unit",
-                f"looks like {unit}",
-            )
+            text = f"reaches {largest:.4g}, no such thing in this unit"
+            yield Finding(ERROR, column, text, f"looks like {unit}")
     if all(log.has("accelerometer", axis) for axis in "xyz"):
         # axes that are told in turn are each known all along
-        weight = float(
-            np.median(
-                np.linalg.norm([bridged(axis) for axis in log.vector("accelerometer").T], axis=0)
-            )
-        )
+        force = [bridged(axis) for axis in log.vector("accelerometer").T]
+        weight = float(np.median(np.linalg.norm(force, axis=0)))
         if not 5 < weight < 20:
             text = f"has a median length of {weight:.3g} m/s^2 where gravity makes 9.8"
-            yield Finding(
-                ERROR,
-                "accelerometer",
-                text,
-                "convert from g, or leave gravity in: +9.81 upward at rest",
-            )
+            remedy = "convert from g, or leave gravity in: +9.81 upward at rest"
+            yield Finding(ERROR, "accelerometer", text, remedy)
     if all(log.has("base_orientation", axis) for axis in "wxyz"):
         length = np.linalg.norm(log.vector("base_orientation"), axis=1)
         if abs(float(np.nanmedian(length)) - 1) > 0.01:
-            yield Finding(
-                ERROR,
-                "base_orientation",
-                "is no unit quaternion",
-                "give w, x, y, z, world from base",
-            )
+            remedy = "give w, x, y, z, world from base"
+            yield Finding(ERROR, "base_orientation", "is no unit quaternion", remedy)
 
 
 def _stuck(log: Log) -> Iterator[Finding]:
@@ -115,11 +92,9 @@ def _stuck(log: Log) -> Iterator[Finding]:
         turned = float(np.nanmax(np.abs(speed))) if np.isfinite(speed).any() else 0.0
         if np.nanmax(values) == np.nanmin(values):
             if driven > 0.05 or turned > 0.1:
+                remedy = "mend the sensor; this joint tells nothing"
                 yield Finding(
-                    ERROR,
-                    f"position/{joint}",
-                    "never changes though the joint is driven",
-                    "mend the sensor; this joint tells nothing",
+                    ERROR, f"position/{joint}", "never changes though the joint is driven", remedy
                 )
             else:
                 yield Finding(
@@ -133,12 +108,8 @@ def _stuck(log: Log) -> Iterator[Finding]:
                 f"is frozen for {length:.2g} s from {log.time[stuck.start]:.4g} s while the "
                 f"joint is driven"
             )
-            yield Finding(
-                WARNING,
-                f"position/{joint}",
-                text,
-                "a stuck sensor or a blocked joint: this stretch is left out",
-            )
+            remedy = "a stuck sensor or a blocked joint: this stretch is left out"
+            yield Finding(WARNING, f"position/{joint}", text, remedy)
 
 
 def _robot(log: Log, subject: Subject) -> Iterator[Finding]:
@@ -146,24 +117,16 @@ def _robot(log: Log, subject: Subject) -> Iterator[Finding]:
     strangers = [joint for joint in own if joint not in known]
     if len(strangers) == len(own):
         text = f"has joints {', '.join(own[:4])}; the robot has {', '.join(subject.joints[:4])}"
-        yield Finding(
-            ERROR,
-            "",
-            f"is a log of another robot: it {text}",
-            "choose the robot of the log, or rename the columns",
-        )
+        remedy = "choose the robot of the log, or rename the columns"
+        yield Finding(ERROR, "", f"is a log of another robot: it {text}", remedy)
         return
     if strangers:
         near = [
             f"{s} ({m[0]}?)" if (m := difflib.get_close_matches(s, subject.joints, 1)) else s
             for s in strangers
         ]
-        yield Finding(
-            ERROR,
-            f"position/{strangers[0]}",
-            f"joints that the robot does not have: {', '.join(near[:5])}",
-            "rename or remove them",
-        )
+        text = f"joints that the robot does not have: {', '.join(near[:5])}"
+        yield Finding(ERROR, f"position/{strangers[0]}", text, "rename or remove them")
     lacking = [joint for joint in subject.joints if joint not in own]
     if lacking:
         text = f"joints of the robot without positions: {', '.join(lacking[:6])}"

@@ -5,14 +5,15 @@ and its way into the simulation.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Set
 from typing import ClassVar
 
 import numpy as np
 
 from hyperleg_design.errors import InputError, meant
-from hyperleg_design.gap.effects.excitation import Excitation, Motion
+from hyperleg_design.gap.effects.excitation import Excitation, Motion, Need, shown_by
 from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placed import Hooks, Placed
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
@@ -52,6 +53,10 @@ class Effect(ABC):
     linear: ClassVar[bool] = False
     """Whether the trace is linear in (values - nulls), but for parameters that only shape it: these
     are one of `variants`."""
+    needs: ClassVar[Need]
+    """What it needs of a motion to show."""
+    hooks: ClassVar[type[Hooks]]
+    """What it does in each step of a simulation, with its parameters as constants."""
     listed: ClassVar[bool] = True
     """Whether the catalogue has it, so that answers name it as a cause. One that it lacks competes
     with those that it has; where it wins, something unlisted acts, which `describe` tells."""
@@ -76,7 +81,7 @@ class Effect(ABC):
     motor or joint at which it sits; empty where it scales none."""
     scales_measured: ClassVar[bool] = True
     """Whether it scales torque that is measured, too, not only what a controller asks for."""
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {}
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {}
     """By name of an experiment of `gap/experiments/experiment.py`, effects that it tells apart from
     this one; that one of two effects says so is enough."""
     nuisance_rank: ClassVar[int] = 0
@@ -114,14 +119,14 @@ class Effect(ABC):
             )
         raise InputError(self.identifier, "location", location, meant(location, found))
 
-    @abstractmethod
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        """Whether a log can show it, where, and why or why not.
+        """Whether a log can show it, where, and why or why not; by default as it `needs`.
 
         Args:
             log: as it was read.
             motion: facts of it.
         """
+        return shown_by(self.identifier, self.needs, log, motion)
 
     @abstractmethod
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -137,9 +142,8 @@ class Effect(ABC):
             filtering; residuals that it leaves alone are missing. Unknown ticks are NaN.
         """
 
-    @abstractmethod
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        """What adds it to a simulation.
+        """What adds it to a simulation; by default its `hooks`.
 
         Args:
             location: one of `locations`.
@@ -147,6 +151,23 @@ class Effect(ABC):
                 leave theirs alone.
             subject: the robot.
         """
+        columns = np.moveaxis(np.asarray(values, float), -1, 0)
+        names = (parameter.name for parameter in self.parameters)
+        return Placed(location, dict(zip(names, columns, strict=True)), live=self.hooks)
+
+    def strength(self, location: str, subject: Subject) -> float:
+        """Torque for which the joint or motor at a place is made [Nm]; 1 of other places.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+        """
+        return 1.0
+
+    def _sized(self, sizes: Iterable[float], location: str, subject: Subject) -> np.ndarray:
+        """Sizes of the parameters at a place, of those that are shares of its strength."""
+        shares = [parameter.of_strength for parameter in self.parameters]
+        return np.array(list(sizes)) * np.where(shares, self.strength(location, subject), 1.0)
 
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """Scale of priors and of finite differences at a place of a robot.
@@ -158,7 +179,7 @@ class Effect(ABC):
         Returns:
             Usual distances from the nulls `(parameters,)`.
         """
-        return np.array([p.typical for p in self.parameters])
+        return self._sized((p.typical for p in self.parameters), location, subject)
 
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
         """Values at which it can be seen: at `size` times the usual distance, inside the bounds.
@@ -172,16 +193,12 @@ class Effect(ABC):
             Values `(parameters,)`.
         """
         values = self.nulls
-        for place, (parameter, usual) in enumerate(
-            zip(self.parameters, self.usual(location, subject), strict=True)
+        for k, (one, usual) in enumerate(
+            zip(self.parameters, self.usual(location, subject).tolist(), strict=True)
         ):
-            if not parameter.shape:
-                above = min(parameter.null + size * float(usual), parameter.high)
-                values[place] = (
-                    above
-                    if above > parameter.null
-                    else max(parameter.null - size * float(usual), parameter.low)
-                )
+            if not one.shape:
+                above = min(one.null + size * usual, one.high)
+                values[k] = above if above > one.null else max(one.null - size * usual, one.low)
         return values
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
@@ -237,9 +254,8 @@ class Effect(ABC):
         return 0.0
 
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """State how far a healthy robot usually is from its model: its nuisance parameters.
-
-        Widths are assumed, of the order that data sheets and drawings are wrong by.
+        """State how far a healthy robot usually is from its model: its nuisance parameters, by
+        default the `spread` of each.
 
         Args:
             subject: the robot.
@@ -247,9 +263,11 @@ class Effect(ABC):
 
         Returns:
             Standard deviations from the nulls by location `(parameters,)`, zero for a parameter
-            that is no nuisance; nothing by default.
+            that is no nuisance; nothing where all are zero.
         """
-        return {}
+        spreads = [p.spread for p in self.parameters]
+        places = self.locations(subject) if any(spreads) else ()
+        return {place: self._sized(spreads, place, subject) for place in places}
 
     def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
         """As `nuisance_spreads`, of places without such a parameter, too: up to three are usual."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,9 +15,6 @@ SWING = 0.3
 """Range of a joint that changes what gravity asks of it [rad]."""
 SLOW = 0.05
 """Share of the moving time below a tenth of the top speed that counts as slow motion."""
-FEW = f"no joint reverses {REVERSALS} times"
-STILL = f"no joint swings by {SWING} rad"
-REVERSES, POSTURES = "motion reverses", "several postures"
 
 
 @dataclass(frozen=True)
@@ -68,60 +66,49 @@ class Motion:
         return np.asarray(self.swing > SWING)
 
 
-def at_joints(
-    effect: str, motion: Motion, passed: np.ndarray, good: str, lacking: str
-) -> Excitation:
-    """Of what sits at joints: those that pass, of which the torque is known.
+@dataclass(frozen=True)
+class Need:
+    """What an effect needs of the motion of a joint to show there."""
+
+    passed: Callable[[Motion], np.ndarray]
+    """Which joints move so `(n,)` of bool."""
+    good: str
+    """What is there, where one passes."""
+    lacking: str
+    """What is lacking, where none does."""
+    asked: bool = False
+    """Whether only what was asked of drives, and measured of them, tells it apart from mechanics;
+    else their torque has to be known."""
+    speeds: bool = False
+    """Whether speeds of motors and joints show it, where a log has both."""
+
+
+def shown_by(effect: str, need: Need, log: Log, motion: Motion) -> Excitation:
+    """State what a log can show of an effect by what the effect needs.
 
     Args:
         effect: its identifier.
-        motion: of the log.
-        passed: joints that move as the effect needs it `(n,)` of bool.
-        good: what is there, where one passes.
-        lacking: what is lacking, where none does.
-    """
-    if not motion.torque.any():
-        return Excitation(
-            effect,
-            False,
-            (),
-            "no torque, no current, and no targets with gains: forces are unknown",
-        )
-    shown = passed & motion.torque
-    return Excitation(
-        effect, bool(shown.any()), tuple(motion.joints[shown]), good if shown.any() else lacking
-    )
-
-
-def at_drives(
-    effect: str, motion: Motion, passed: np.ndarray, good: str, lacking: str
-) -> Excitation:
-    """Of what needs command and measurement of the same motor to be told apart from mechanics;
-    arguments as of `at_joints`.
-
-    Args:
-        effect: its identifier.
-        motion: facts of the log.
-        passed: joints that move as the effect needs it `(n,)` of bool.
-        good: what is there, where one passes.
-        lacking: what is lacking, where none does.
+        need: of the effect.
+        log: as it was read.
+        motion: facts of it.
 
     Returns:
-        Whether the log can show it, where, and why or why not.
+        Whether the log can show the effect, where, and why or why not.
     """
-    if not motion.asked.any():
-        return Excitation(
-            effect,
-            False,
-            (),
-            "no targets with gains and no torque command: what was asked for is unknown",
-        )
-    shown = passed & motion.asked
-    both = (shown & motion.measured).any()
-    text = good if both else f"{good}; no measured torque or current, so only through the motion"
-    return Excitation(
-        effect, bool(shown.any()), tuple(motion.joints[shown]), text if shown.any() else lacking
-    )
+    if need.speeds and (by := by_speeds(effect, log, motion)) is not None:
+        return by
+    known = motion.asked if need.asked else motion.torque
+    if not known.any():
+        why = "no torque, no current, and no targets with gains: forces are unknown"
+        if need.asked:
+            why = "no targets with gains and no torque command: what was asked for is unknown"
+        return Excitation(effect, False, (), why)
+    shown = need.passed(motion) & known
+    good = need.good
+    if need.asked and not (shown & motion.measured).any():
+        good = f"{good}; no measured torque or current, so only through the motion"
+    where = tuple(motion.joints[shown])
+    return Excitation(effect, bool(where), where, good if where else need.lacking)
 
 
 def by_speeds(effect: str, log: Log, motion: Motion) -> Excitation | None:
@@ -139,3 +126,11 @@ def by_speeds(effect: str, log: Log, motion: Motion) -> Excitation | None:
     if motors and (motion.reversals > 0).any():
         return Excitation(effect, True, motors, "speeds of motors and joints")
     return None
+
+
+REVERSING = Need(
+    lambda motion: motion.reversing, "motion reverses", f"no joint reverses {REVERSALS} times"
+)
+SWINGING = Need(
+    lambda motion: motion.swinging, "several postures", f"no joint swings by {SWING} rad"
+)

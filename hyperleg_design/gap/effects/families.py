@@ -18,44 +18,17 @@ WITHOUT_DRIVE = INERTIAL | {"viscous_friction", "coulomb_friction", "joint_sprin
 """What a joint shows while its drive is off."""
 WITH_LOAD = INERTIAL | {"encoder_offset", "joint_spring", "load_dependent_friction"}
 """What changes with a known load otherwise than a scale of the torque does."""
+IN_DRIVES = LATE | SCALING - {"transmission_ratio"} | {"torque_saturation"}
+"""What changes the torque that a motor gives, before anything that acts at its joints."""
+AT_JOINTS = {"rotor_inertia", "joint_spring", "encoder_offset", "cogging"}
+"""What is neither friction nor a mass."""
 BEYOND_COMMANDS = (
     FRICTION
     | INERTIAL
-    | {
-        "torque_constant",
-        "transmission_ratio",
-        "rotor_inertia",
-        "joint_spring",
-        "encoder_offset",
-        "thermal_derating",
-        "backlash",
-        "transmission_elasticity",
-        "cogging",
-    }
+    | AT_JOINTS
+    | {"torque_constant", "thermal_derating"}
+    | {"transmission_ratio", "backlash", "transmission_elasticity"}
 )
 """What acts behind the torque that a drive measures, and not on what is asked of it."""
-BESIDE_TRANSMISSIONS = (
-    FRICTION
-    | INERTIAL
-    | LATE
-    | {
-        "torque_constant",
-        "thermal_derating",
-        "voltage_sag",
-        "torque_saturation",
-        "controller_gain",
-        "rotor_inertia",
-        "encoder_offset",
-        "joint_spring",
-        "cogging",
-    }
-)
+BESIDE_TRANSMISSIONS = FRICTION | INERTIAL | IN_DRIVES | AT_JOINTS
 """What leaves the speeds of rotors and joints in their nominal ratio."""
-IN_DRIVES = LATE | {
-    "torque_constant",
-    "thermal_derating",
-    "voltage_sag",
-    "torque_saturation",
-    "controller_gain",
-}
-"""What changes the torque that a motor gives, before anything that acts at its joints."""

@@ -12,7 +12,13 @@ import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.placing import at_joint, at_motor, driven_motors
+from hyperleg_design.gap.effects.placing import (
+    at_joint,
+    at_motor,
+    driven_motors,
+    joint_strength,
+    motor_strength,
+)
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 
@@ -25,6 +31,10 @@ class JointEffect(Effect):
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
         return subject.joints
+
+    @override
+    def strength(self, location: str, subject: Subject) -> float:
+        return float(joint_strength(subject)[subject.joints.index(location)])
 
 
 class JointTorque(JointEffect):
@@ -49,6 +59,10 @@ class MotorEffect(Effect):
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
         return driven_motors(subject)
+
+    @override
+    def strength(self, location: str, subject: Subject) -> float:
+        return motor_strength(subject, subject.motors.index(location))
 
 
 class MotorTorque(MotorEffect):

@@ -16,6 +16,7 @@ constant is; so do joint torques.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import compress
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from hyperleg_design.gap.model.machine import machine_of
 from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.simulation import alteration
 
 SIDES = ("encoders at the joints", "encoders at the rotors")
 """Choices of the parameter `side`: whose positions logs and controllers know."""
@@ -48,25 +50,8 @@ def driven_motors(subject: Subject) -> tuple[str, ...]:
         Their names.
     """
     if subject.one_to_one:
-        return tuple(
-            name
-            for name, passive in zip(subject.motors, subject.passive, strict=True)
-            if not passive
-        )
+        return tuple(compress(subject.motors, ~subject.passive))
     return subject.motors
-
-
-def moved_joints(subject: Subject, motor: int) -> tuple[str, ...]:
-    """Joints that follow a motor.
-
-    Args:
-        subject: the robot.
-        motor: index of the motor.
-
-    Returns:
-        Their names.
-    """
-    return tuple(subject.joints[j] for j in np.flatnonzero(subject.motor_from_joint[motor]))
 
 
 def at_joint(signals: Signals, joint: int, torque: np.ndarray) -> dict[str, np.ndarray]:
@@ -103,29 +88,30 @@ def at_motor(signals: Signals, motor: int, torque: np.ndarray) -> dict[str, np.n
 
 
 def before_measurement(
-    signals: Signals, changes: Mapping[int, np.ndarray]
+    signals: Signals,
+    changes: Mapping[int, np.ndarray],
+    control: Mapping[int, np.ndarray] | None = None,
 ) -> dict[str, np.ndarray]:
-    """Trace of changes of what drives give, by place of the motor `(k, t)` [Nm]; the rule of this
-    module.
+    """Trace of changes of what drives give, by the rule of this module, and of what controllers ask
+    of them.
 
     Args:
         signals: a conditioned log, `t` ticks.
         changes: of the torque, by index of the motor `(k, t)` [Nm].
+        control: of logged commands, likewise, where the residual of the control shows them.
 
     Returns:
         The trace by name of the residual.
     """
     rows: dict[str, np.ndarray] = {}
+    for motor, share in (control or {}).items() if "control" in signals.residual else ():
+        rows.setdefault("control", _rows(share, len(signals.subject.motors)))[:, motor] = share
     for motor, change in changes.items():
         if is_measured(signals, motor):
             rows.setdefault("drive", _rows(change, len(signals.subject.motors)))[:, motor] += change
         else:
-            _add(
-                rows.setdefault("motion", _rows(change, len(signals.subject.joints))),
-                signals,
-                motor,
-                -change,
-            )
+            moved = rows.setdefault("motion", _rows(change, len(signals.subject.joints)))
+            _add(moved, signals, motor, -change)
     return {residual_name: values.swapaxes(1, 2) for residual_name, values in rows.items()}
 
 
@@ -259,24 +245,14 @@ def limited(
             motor's own.
     """
     subject = signals.subject
-    peak = np.minimum(subject.torque_limit[motor], peak)
     stall, free = line or (subject.stall_torque[motor], subject.no_load_speed[motor])
-    lined = bool(np.isfinite(stall).all() and np.isfinite(free).all())
-    droop = stall / free * signals.motor_speed[:, motor] if lined else np.zeros(1)
-    available = stall * np.maximum(voltage, 0.0) * signals.supplied[:, motor]
-    largest = max(float(np.nanmax(torque, initial=0.0)), -float(np.nanmin(torque, initial=0.0)))
-    if largest <= min(
-        float(np.nanmin(peak, initial=np.inf)),
-        float(np.nanmin(available, initial=np.inf)) - float(np.abs(droop).max()),
-    ):
-        return np.broadcast_to(
-            torque, np.broadcast_shapes(np.shape(torque), np.shape(peak), np.shape(voltage))
-        )
-    torque = np.clip(torque, -peak, peak)
-    if not lined:
-        return torque
-    return np.asarray(
-        np.clip(np.maximum(np.minimum(torque, available - droop), -available - droop), -peak, peak)
+    return alteration.limited(
+        torque,
+        signals.motor_speed[:, motor],
+        np.minimum(subject.torque_limit[motor], peak),
+        stall,
+        free,
+        np.maximum(voltage, 0.0) * signals.supplied[:, motor],
     )
 
 
@@ -312,11 +288,7 @@ def motor_strength(subject: Subject, motor: int) -> float:
         return float(subject.torque_limit[motor])
     column = np.abs(subject.joint_from_motor[:, motor])
     used = column > 0
-    return (
-        float(np.max(joint_strength(subject)[used] / column[used], initial=1e-3))
-        if used.any()
-        else 1e-3
-    )
+    return float(np.max(joint_strength(subject)[used] / column[used], initial=1e-3))
 
 
 def motor_strengths(subject: Subject) -> np.ndarray:

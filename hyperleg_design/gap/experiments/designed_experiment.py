@@ -99,15 +99,13 @@ def inseparable(experiment: Experiment) -> tuple[Pair, ...]:
     Returns:
         The pairs.
     """
-    gram = experiment.gram()
+    gram, unseen = experiment.gram(), hidden(experiment)
     return tuple(
         pair
         for pair in experiment.pairs
         if apart(gram, experiment.blocks, pair) < CLEAR
-        and all(
-            info.strength(gram, experiment.blocks, place) >= CLEAR
-            for place in (pair.first, pair.second)
-        )
+        and pair.first not in unseen
+        and pair.second not in unseen
     )
 
 
@@ -121,8 +119,5 @@ def hidden(experiment: Experiment) -> tuple[Place, ...]:
         Effects and locations.
     """
     gram = experiment.gram()
-    return tuple(
-        place
-        for place in experiment.blocks.places
-        if info.strength(gram, experiment.blocks, place) < CLEAR
-    )
+    blocks = experiment.blocks
+    return tuple(p for p in blocks.places if info.strength(gram, blocks, p) < CLEAR)

@@ -217,35 +217,19 @@ def write_motion(
     driven = [i for i in range(len(subject.joints)) if not subject.passive[i]]
     written = []
     if "csv" in kinds:
-        header = ",".join(
-            ["t", *(f"position_target/{subject.joints[i]}" for i in driven), "drives_on"]
-        )
-        rows = [header]
-        for time, target, off in zip(
-            motion.time, motion.target[:, driven], motion.off, strict=True
-        ):
-            rows.append(
-                ",".join(
-                    [
-                        f"{time:.6f}",
-                        *("" if off else f"{v:.6f}" for v in target),
-                        "0" if off else "1",
-                    ]
-                )
-            )
-        written.append(write_text(folder / f"{motion.name}.csv", "\n".join(rows) + "\n"))
+        targets = [f"position_target/{subject.joints[i]}" for i in driven]
+        rows = [["t", *targets, "drives_on"]]
+        for t, target, off in zip(motion.time, motion.target[:, driven], motion.off, strict=True):
+            values = ("" if off else f"{v:.6f}" for v in target)
+            rows.append([f"{t:.6f}", *values, "0" if off else "1"])
+        text = "\n".join(map(",".join, rows)) + "\n"
+        written.append(write_text(folder / f"{motion.name}.csv", text))
     if "parquet" in kinds:
         signals = {f"position_target/{subject.joints[i]}": motion.target[:, i] for i in driven}
-        metadata = Metadata(
-            robot=subject.path,
-            base="fixed",
-            notes=f"targets of {motion.name}; unknown while the drives are off",
-        )
-        written.append(
-            write_log(
-                folder / f"{motion.name}.parquet", Log(motion.name, motion.time, signals, metadata)
-            )
-        )
+        notes = f"targets of {motion.name}; unknown while the drives are off"
+        metadata = Metadata(robot=subject.path, base="fixed", notes=notes)
+        log = Log(motion.name, motion.time, signals, metadata)
+        written.append(write_log(folder / f"{motion.name}.parquet", log))
     return written
 
 

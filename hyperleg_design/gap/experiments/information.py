@@ -124,46 +124,28 @@ def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np
     """
     subject = signals.subject
     scales = {"motion": noise * joint_strength(subject), "drive": noise * motor_strengths(subject)}
-    scales = {
-        residual_name: scale
-        for residual_name, scale in scales.items()
-        if residual_name in signals.residual
-    }
+    scales = {name: scale for name, scale in scales.items() if name in signals.residual}
     every = max(int(0.5 / (2 * BAND * signals.step)), 1)
-    known = {
-        residual_name: np.isfinite(signals.residual[residual_name]) & signals.valid[:, None]
-        for residual_name in scales
-    }
+    known = {name: np.isfinite(signals.residual[name]) & signals.valid[:, None] for name in scales}
     shape = (len(signals.time[::every]), blocks.columns)
-    rows = {
-        residual_name: np.zeros((scale.size, *shape), np.float32)
-        for residual_name, scale in scales.items()
-    }
-    for at, (identifier, location) in enumerate(blocks.places):
-        for residual_name, found in _block(
-            EFFECTS[identifier], signals, location, blocks.values[at]
-        ).items():
-            if residual_name not in scales:
-                continue
+    rows = {name: np.zeros((scale.size, *shape), np.float32) for name, scale in scales.items()}
+    for start, (effect, location), at in zip(
+        blocks.start, blocks.places, blocks.values, strict=True
+    ):
+        made = _block(EFFECTS[effect], signals, location, at)
+        for name in made.keys() & scales.keys():
+            found = made[name]
             for row in np.flatnonzero(np.any(found != 0, (0, 1))):
-                values = np.where(
-                    known[residual_name][:, row] & np.isfinite(found[..., row]),
-                    found[..., row],
-                    0.0,
-                )
-                kept = np.where(
-                    known[residual_name][::every, row],
-                    low_passed(values, signals.step, BAND)[:, ::every],
-                    0.0,
-                )
-                rows[residual_name][row, :, blocks.start[at] : blocks.start[at] + len(found)] = (
-                    kept.T / scales[residual_name][row]
-                )
+                own, values = known[name][:, row], found[..., row]
+                values = np.where(own & np.isfinite(values), values, 0.0)
+                kept = low_passed(values, signals.step, BAND)[:, ::every] * own[::every]
+                columns = slice(start, start + len(found))
+                rows[name][row, :, columns] = kept.T / scales[name][row]
     total = np.zeros((blocks.columns, blocks.columns))
     for part in rows.values():
-        for columns in part:
-            used = np.flatnonzero(np.any(columns != 0, 0))
-            total[np.ix_(used, used)] += columns[:, used].T.astype(float) @ columns[:, used]
+        for told in part:
+            used = np.flatnonzero(np.any(told != 0, 0))
+            total[np.ix_(used, used)] += told[:, used].T.astype(float) @ told[:, used]
     return total * (signals.step * every / (2 * NOISE_TIME))
 
 

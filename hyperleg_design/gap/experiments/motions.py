@@ -17,6 +17,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import compress
 
 import numpy as np
 
@@ -212,19 +213,13 @@ def swinging(subject: Subject, room: Room, rate: float) -> Motion | LeftOut:
     """
     name = "swing"
     ticks = np.arange(round(SWING * rate) + 1) / rate
-    hanging = swung(
-        dataclasses.replace(subject, viscous=subject.viscous + SETTLING * joint_strength(subject)),
-        room.centre,
-        ticks,
-    )[-1]
+    viscous = subject.viscous + SETTLING * joint_strength(subject)
+    hanging = swung(dataclasses.replace(subject, viscous=viscous), room.centre, ticks)[-1]
     if not ((hanging >= room.low) & (hanging <= room.high)).all():
         return LeftOut(name, "with the drives off the joints fall out of their range")
+    side = np.where(np.arange(len(room.centre)) % 2 == 0, 1.0, -1.0)
     for size in SWING_FROM:
-        start = np.clip(
-            hanging + size * room.reach * np.where(np.arange(len(room.centre)) % 2 == 0, 1.0, -1.0),
-            room.low,
-            room.high,
-        )
+        start = np.clip(hanging + size * room.reach * side, room.low, room.high)
         lift = trajectories.visited(rate, [room.centre, start], [0.2, 0.5], room, 1.0)
         free = swung(subject, start, ticks)
         if not (np.isfinite(free).all() and (free >= room.low).all() and (free <= room.high).all()):
@@ -239,15 +234,8 @@ def swinging(subject: Subject, room: Room, rate: float) -> Motion | LeftOut:
             position = np.concatenate([lift, free])
             time = np.arange(len(position)) / rate
             target = np.concatenate([target, np.full_like(free, np.nan)])
-            return Motion(
-                name,
-                "friction and springs of the joints with the drives off",
-                time,
-                target,
-                position,
-                size,
-                use,
-            )
+            purpose = "friction and springs of the joints with the drives off"
+            return Motion(name, purpose, time, target, position, size, use)
     return LeftOut(name, "with the drives off the joints swing out of their range")
 
 
@@ -288,14 +276,8 @@ def best_phases(
         The phases [rad], `(harmonics, n)`.
     """
     drawn = rng.uniform(0, 2 * np.pi, (DRAWS, HARMONICS, len(room.centre)))
-    grams = [
-        _inertial_gram(
-            subject,
-            trajectories.fourier(time, room, FOURIER_BASE, HARMONICS, phase),
-            time[1] - time[0],
-        )
-        for phase in drawn
-    ]
+    motions = (trajectories.fourier(time, room, FOURIER_BASE, HARMONICS, p) for p in drawn)
+    grams = [_inertial_gram(subject, motion, time[1] - time[0]) for motion in motions]
     values, axes = np.linalg.eigh(np.sum(grams, 0))
     shown = axes[:, values > 1e-9 * values[-1]]
     scores = [np.linalg.slogdet(shown.T @ gram @ shown)[1] for gram in grams]
@@ -308,20 +290,10 @@ def _inertial_gram(subject: Subject, position: np.ndarray, step: float) -> np.nd
     tree = subject.tree
     columns = []
     for joint in range(tree.count):
-        link = next(
-            (
-                name
-                for name, carrier in zip(tree.links, tree.link_joint, strict=True)
-                if carrier == joint
-            ),
-            None,
-        )
+        link = next(compress(tree.links, tree.link_joint == joint), None)
         if link is not None:
-            columns.append(
-                inertial_regressor.regressors(
-                    subject, position, velocity, acceleration, None, link
-                )[0]
-            )
+            motion = position, velocity, acceleration
+            columns.append(inertial_regressor.regressors(subject, *motion, None, link)[0])
     matrix = (np.concatenate(columns, -1) / joint_strength(subject)[None, :, None]).reshape(
         -1, 10 * len(columns)
     )

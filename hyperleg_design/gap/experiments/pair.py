@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import compress
 
 import numpy as np
 
@@ -78,11 +79,7 @@ def place_at(effect: str, joint: int, subject: Subject, blocks: Blocks) -> Place
     """
     known = [location for name, location in blocks.places if name == effect]
     motor = subject.motors[int(np.argmax(np.abs(subject.joint_from_motor[joint])))]
-    links = [
-        name
-        for name, carrier in zip(subject.tree.links, subject.tree.link_joint, strict=True)
-        if carrier == joint
-    ]
+    links = compress(subject.tree.links, subject.tree.link_joint == joint)
     for name in (subject.joints[joint], motor, *links):
         if name in known:
             return effect, name

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from hyperleg_design.gap.experiments.designed_experiment import (
     hidden,
     inseparable,
 )
+from hyperleg_design.gap.experiments.information import Blocks
 from hyperleg_design.gap.experiments.pair import Pair, apart
 
 
@@ -32,14 +34,10 @@ def plan_mapping(experiment: Experiment) -> dict[str, Any]:
     def effects_of(gram: np.ndarray) -> dict[str, Any]:
         effects: dict[str, Any] = {}
         for place in blocks.places:
-            deviations = {
-                k: _number(v)
-                for k, v in info.standard_deviations(gram, blocks, place, subject).items()
-            }
-            clear = info.strength(gram, blocks, place)
+            deviations = info.standard_deviations(gram, blocks, place, subject)
             effects.setdefault(place[0], {})[place[1]] = {
-                "stands_out": _number(clear),
-                "standard_deviation": deviations,
+                "stands_out": _number(info.strength(gram, blocks, place)),
+                "standard_deviation": {name: _number(v) for name, v in deviations.items()},
             }
         return effects
 
@@ -54,9 +52,7 @@ def plan_mapping(experiment: Experiment) -> dict[str, Any]:
             "torque_measured": experiment.torque,
         },
         "clear_from": CLEAR,
-        "start_posture": dict(
-            zip(subject.joints, (float(v) for v in experiment.room.centre), strict=True)
-        ),
+        "start_posture": dict(zip(subject.joints, experiment.room.centre.tolist(), strict=True)),
         "motions": [
             {
                 "name": m.name,
@@ -64,35 +60,23 @@ def plan_mapping(experiment: Experiment) -> dict[str, Any]:
                 "duration": m.duration,
                 "scale": m.scale,
                 "drives_off": float(m.off.sum() / experiment.rate),
-                "use": {
-                    "range": m.use.range,
-                    "speed": m.use.speed,
-                    "envelope": m.use.envelope,
-                    "continuous": m.use.continuous,
-                    "worst": m.use.worst,
-                },
+                "use": asdict(m.use),
                 "shows": sorted(
-                    {
-                        place[0]
-                        for place in blocks.places
-                        if info.strength(grams[m.name], blocks, place) >= CLEAR
-                    }
+                    {p[0] for p in blocks.places if experiment.shown(p, [m.name]) >= CLEAR}
                 ),
-                "tells_apart": _pairs_told(grams[m.name], experiment),
+                "tells_apart": [_pair(p, grams[m.name], blocks) for p in experiment.pairs],
                 "effects": effects_of(grams[m.name]),
             }
             for m in experiment.motions
         ],
-        "left_out": [{"name": one.name, "why": one.why} for one in experiment.left_out],
+        "left_out": [asdict(one) for one in experiment.left_out],
         "shortest_set": {
             "motions": list(experiment.chosen),
             "duration": float(sum(experiment.motion(n).duration for n in experiment.chosen)),
             "effects": effects_of(chosen),
-            "tells_apart": _pairs_told(chosen, experiment),
+            "tells_apart": [_pair(pair, chosen, blocks) for pair in experiment.pairs],
         },
-        "inseparable": [
-            _pair(pair, experiment.gram(), experiment) for pair in inseparable(experiment)
-        ],
+        "inseparable": [_pair(p, experiment.gram(), blocks) for p in inseparable(experiment)],
         "not_shown": [
             {"effect": effect, "location": location} for effect, location in hidden(experiment)
         ],
@@ -100,21 +84,15 @@ def plan_mapping(experiment: Experiment) -> dict[str, Any]:
     }
 
 
-def _pairs_told(gram: np.ndarray, experiment: Experiment) -> list[dict[str, Any]]:
-    return [_pair(pair, gram, experiment) for pair in experiment.pairs]
-
-
-def _pair(pair: Pair, gram: np.ndarray, experiment: Experiment) -> dict[str, Any]:
-    blocks = experiment.blocks
+def _pair(pair: Pair, gram: np.ndarray, blocks: Blocks) -> dict[str, Any]:
+    angle = np.degrees(info.principal_angle(gram, blocks, pair.first, pair.second))
     return {
         "joint": pair.joint,
         "first": list(pair.first),
         "second": list(pair.second),
         "separated_by": pair.by,
         "apart": _number(apart(gram, blocks, pair)),
-        "principal_angle": _number(
-            float(np.degrees(info.principal_angle(gram, blocks, pair.first, pair.second)))
-        ),
+        "principal_angle": _number(float(angle)),
     }
 
 

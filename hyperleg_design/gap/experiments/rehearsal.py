@@ -135,11 +135,8 @@ def closed_loop(
     states = np.concatenate(rows)[: len(target)]
     position, velocity = states[:, : model.nq], states[:, model.nq : model.nq + model.nv]
     stiffness, damping = np.nan_to_num(subject.gains).T
-    asked = np.where(
-        off[:, None] | subject.passive,
-        0.0,
-        stiffness * (np.nan_to_num(target) - position) - damping * velocity,
-    )
+    asked = stiffness * (np.nan_to_num(target) - position) - damping * velocity
+    asked = np.where(off[:, None] | subject.passive, 0.0, asked)
     torque = limited_torque(
         subject, asked @ subject.motor_from_joint.T, velocity @ subject.joint_from_motor
     )

@@ -59,13 +59,9 @@ def amplitude(frequency: np.ndarray, room: Room, size: float = 1.0) -> np.ndarra
         The amplitude [rad], `(..., n)`.
     """
     omega = 2 * np.pi * np.asarray(frequency)[..., None]
-    limits = np.stack(
-        np.broadcast_arrays(
-            size * room.reach + 0 * omega,
-            size * room.speed / omega,
-            size * room.acceleration / omega**2,
-        )
-    )
+    by_speed, by_acceleration = size * room.speed / omega, size * room.acceleration / omega**2
+    by_range = np.broadcast_to(size * room.reach, by_speed.shape)
+    limits = np.stack([by_range, by_speed, by_acceleration])
     least = limits.min(0)
     # A smooth least: where one limit gives way to another, a chirp's velocity must not jump.
     return np.asarray(least * ((least / limits) ** SHARPNESS).sum(0) ** (-1 / SHARPNESS))
@@ -93,11 +89,8 @@ def chirp(time: np.ndarray, room: Room, slowest: float, fastest: float) -> np.nd
     for joint in range(count):
         pace = 1 - 0.12 * ((joint * GOLDEN) % 1.0)
         frequency = pace * slowest * np.exp(growth * share)
-        phase = (
-            2
-            * np.pi
-            * (pace * slowest * total / growth * np.expm1(growth * share) + joint * GOLDEN)
-        )
+        turns = pace * slowest * total / growth * np.expm1(growth * share) + joint * GOLDEN
+        phase = 2 * np.pi * turns
         columns.append(0.85 * amplitude(frequency, room)[:, joint] * np.sin(phase))
     return np.asarray(room.centre + np.stack(columns, -1) * window(time)[:, None])
 
@@ -244,11 +237,8 @@ def fourier(
     """
     order = np.arange(1, harmonics + 1)
     weight = 1.0 / np.sqrt(order)
-    wave = np.einsum(
-        "h,thn->tn",
-        weight,
-        np.sin(2 * np.pi * base * order[None, :, None] * time[:, None, None] + phase[None]),
-    )
+    waves = np.sin(2 * np.pi * base * order[None, :, None] * time[:, None, None] + phase[None])
+    wave = np.einsum("h,thn->tn", weight, waves)
     wave /= np.maximum(np.abs(wave).max(0), 1e-9)
     moving = room.reach * wave * window(time)[:, None]
     step = time[1] - time[0]
@@ -278,12 +268,9 @@ def visited(
         way = np.abs(after - before)
         # The fifth-order step is at most 1.875 ways a duration fast and accelerates at most by
         # 5.7735.
-        time = max(
-            0.12,
-            least,
-            float((1.875 * way / room.speed).max()),
-            float(np.sqrt(5.7735 * way / room.acceleration).max()),
-        )
+        by_speed = float((1.875 * way / room.speed).max())
+        by_acceleration = float(np.sqrt(5.7735 * way / room.acceleration).max())
+        time = max(0.12, least, by_speed, by_acceleration)
         share = smooth_step(np.arange(1, round(time * rate) + 1) / round(time * rate))[:, None]
         rows += [
             before + share * (after - before),

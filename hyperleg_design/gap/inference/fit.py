@@ -127,14 +127,7 @@ def _by_least_squares(
     size = np.sqrt(np.diag(matrix))
     square, axes = np.linalg.eigh(matrix / np.outer(size, size))
     root = np.sqrt(np.maximum(square, SINGULAR))
-    found = lsq_linear(
-        root[:, None] * axes.T,
-        axes.T @ (right / size) / root,
-        (low * size, high * size),
-        method="bvls",
-    )
-    return np.where(
-        found.active_mask < 0,
-        low,
-        np.where(found.active_mask > 0, high, np.clip(found.x / size, low, high)),
-    )
+    wanted, bounds = axes.T @ (right / size) / root, (low * size, high * size)
+    found = lsq_linear(root[:, None] * axes.T, wanted, bounds, method="bvls")
+    inside = np.clip(found.x / size, low, high)
+    return np.where(found.active_mask < 0, low, np.where(found.active_mask > 0, high, inside))

@@ -50,13 +50,9 @@ class GapSize:
             held: its prediction of held-out blocks.
             rules: of the inference.
         """
-        return cls(
-            evidence,
-            held,
-            mean_squares(evidence, held.before),
-            mean_squares(evidence, held.after),
-            _lowest_squares(evidence, hypothesis, held, rules),
-        )
+        before, after = mean_squares(evidence, held.before), mean_squares(evidence, held.after)
+        lowest = _lowest_squares(evidence, hypothesis, held, rules)
+        return cls(evidence, held, before, after, lowest)
 
     @cached_property
     def excess(self) -> np.ndarray:
@@ -121,18 +117,14 @@ class GapSize:
         chosen = np.zeros(number, bool)
         for place in np.flatnonzero(self.counts).tolist():
             chosen[self.evidence.channels[place].under_test] = True
-        sums = {
-            name: draws
-            @ np.bincount(
-                samples.block[chosen],
-                ((getattr(self.held, name) * self.evidence.weight)[:number] ** 2)[chosen],
-                count,
-            )
-            for name in ("before", "after", "noise")
-        }
-        before, after = np.sqrt(sums["before"]), np.sqrt(sums["after"])
+
+        def summed(values: np.ndarray) -> np.ndarray:
+            squares = ((values * self.evidence.weight)[:number] ** 2)[chosen]
+            return np.asarray(draws @ np.bincount(samples.block[chosen], squares, count))
+
+        before, after = np.sqrt(summed(self.held.before)), np.sqrt(summed(self.held.after))
         share = self.lowest**2 / max(self.total(self.squares(self.held.noise)), 1e-300)
-        lowest = np.minimum(np.sqrt(share * sums["noise"]), after)
+        lowest = np.minimum(np.sqrt(share * summed(self.held.noise)), after)
         return np.minimum((before - after) / np.maximum(before - lowest, 1e-12), 1.0)
 
     def squares(self, values: np.ndarray) -> np.ndarray:
@@ -160,13 +152,9 @@ def mean_squares(evidence: Evidence, values: np.ndarray) -> np.ndarray:
         values: of all samples `(S,)`, in the residuals' units.
     """
     square = (values * evidence.weight) ** 2
-    return np.array(
-        [
-            float(square[channel.under_test].sum())
-            / max(float(evidence.samples.share[channel.under_test].sum()), 1e-300)
-            for channel in evidence.channels
-        ]
-    )
+    own = [channel.under_test for channel in evidence.channels]
+    counts = [max(float(evidence.samples.share[one].sum()), 1e-300) for one in own]
+    return np.array([float(square[one].sum()) for one in own]) / np.array(counts)
 
 
 def _lowest_squares(

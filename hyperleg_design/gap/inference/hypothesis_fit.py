@@ -68,25 +68,18 @@ class HypothesisFit:
     @cached_property
     def nothing(self) -> Hypothesis:
         """No cause: noise and discrepancy alone."""
-        scales = tuple(
-            screen.spread(
-                lambda one: fitted(one, one.start(self.rules), self.rules),
-                self.evidence.channels,
-                self.threads,
-            )
+        channels, rules = self.evidence.channels, self.rules
+        made = screen.spread(
+            lambda one: fitted(one, one.start(rules), rules), channels, self.threads
         )
-        prior = float(np.log(1 - self.rules.cause.probability))
-        return Hypothesis((), np.zeros(0), np.zeros((0, 0)), scales, 0.0, prior)
+        prior = float(np.log(1 - rules.cause.probability))
+        return Hypothesis((), np.zeros(0), np.zeros((0, 0)), tuple(made), 0.0, prior)
 
     @cached_property
     def ground(self) -> np.ndarray:
         """Log posterior of each channel without any cause `(channels,)` [nat]."""
-        return np.array(
-            [
-                channel.log_posterior(scales, self.rules)
-                for channel, scales in zip(self.evidence.channels, self.nothing.scales, strict=True)
-            ]
-        )
+        channels = zip(self.evidence.channels, self.nothing.scales, strict=True)
+        return np.array([one.log_posterior(scales, self.rules) for one, scales in channels])
 
     def candidate(self, promise: Promise, current: Hypothesis) -> Candidate | None:
         """An effect linearised where it fits best, by Gauss-Newton steps at fixed scales."""
@@ -222,11 +215,10 @@ class HypothesisFit:
         for turn in range(rules.rounds):
             left = crossing.left(channels, _sizes(stack, solution))
             sweeps, steps = (2, STEPS) if turn == 0 else (1, STEPS[-1:])
+            each = zip(channels, found, left, crossing.shown, strict=True)
             found = [
-                fitted(channel, own, self.rules, rest, sweeps, steps) if len(seen) else own
-                for channel, own, rest, seen in zip(
-                    channels, found, left, crossing.shown, strict=True
-                )
+                fitted(one, own, self.rules, rest, sweeps, steps) if len(seen) else own
+                for one, own, rest, seen in each
             ]
             before, solution = solution.theta, self.at_scales(stack, crossing, found)
             deviation = np.sqrt(np.maximum(np.diag(solution.covariance), 1e-300))
@@ -237,14 +229,8 @@ class HypothesisFit:
             channel.log_posterior(own, self.rules, rest) - ground
             for channel, own, rest, ground in zip(channels, found, left, self.ground, strict=True)
         )
-        hypothesis = Hypothesis(
-            tuple(candidates),
-            solution.theta,
-            solution.covariance,
-            tuple(found),
-            float(likelihood),
-            0.0,
-        )
+        sizes = solution.theta, solution.covariance
+        hypothesis = Hypothesis(tuple(candidates), *sizes, tuple(found), float(likelihood), 0.0)
         prior = log_prior(hypothesis, self.evidence, self.rules, self.count)
         return replace(hypothesis, log_prior=prior)
 

@@ -24,12 +24,8 @@ def intervals(
     for i, parameter in enumerate(effect.parameters):
         rough = effect.rough.get(parameter.name, 0.0) * abs(values[i])
         reach = NORMAL * np.hypot(deviation[i], rough)
-        found[parameter.name] = Value(
-            float(values[i]),
-            float(max(values[i] - reach, cause.low[i])),
-            float(min(values[i] + reach, cause.high[i])),
-            parameter.unit,
-        )
+        low, high = max(values[i] - reach, cause.low[i]), min(values[i] + reach, cause.high[i])
+        found[parameter.name] = Value(float(values[i]), float(low), float(high), parameter.unit)
     return found | _derived(subject, cause, values, found)
 
 
@@ -43,10 +39,8 @@ def _derived(
     middle = effect.derived(cause.location, values, subject)
     below, above = dict.fromkeys(middle, 0.0), dict.fromkeys(middle, 0.0)
     for i, parameter in enumerate(effect.parameters):
-        ends = [
-            np.where(np.arange(len(values)) == i, end, values)
-            for end in (found[parameter.name].low, found[parameter.name].high)
-        ]
+        own, interval = np.arange(len(values)) == i, found[parameter.name]
+        ends = [np.where(own, end, values) for end in (interval.low, interval.high)]
         tried = [effect.derived(cause.location, end, subject) for end in ends]
         for name, (value, _) in middle.items():
             moves = [t[name][0] - value for t in tried if name in t]

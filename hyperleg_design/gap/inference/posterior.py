@@ -115,13 +115,12 @@ def _faults(
 ) -> tuple[Candidate, ...]:
     """Candidates that are not, more probably than not, a usual calibration error alone."""
     likely = float(np.log(rules.posterior.likely))
-    return tuple(
-        dict.fromkeys(
-            candidate
-            for place, candidate in expanded(hypothesis.candidates)
-            if beyond_usual(hypothesis, place, evidence, rules) > likely
-        )
+    found = (
+        candidate
+        for place, candidate in expanded(hypothesis.candidates)
+        if beyond_usual(hypothesis, place, evidence, rules) > likely
     )
+    return tuple(dict.fromkeys(found))
 
 
 def _effects(hypothesis: Hypothesis) -> list[float]:

@@ -168,9 +168,5 @@ class InferenceRules:
             for rule in dataclasses.fields(values):
                 value = getattr(values, rule.name)
                 if not math.isfinite(value):
-                    raise InputError(
-                        "inference rules",
-                        f"{section.name}.{rule.name}",
-                        value,
-                        "expects a finite number",
-                    )
+                    place = f"{section.name}.{rule.name}"
+                    raise InputError("inference rules", place, value, "expects a finite number")

@@ -100,21 +100,14 @@ def gather(
         sessions: number of the session of each log, from 0.
         information: share of what would be independent numbers in white noise that counts as such.
     """
-    keys = list(
-        dict.fromkeys(
-            (r.residual_name, r.column) for filtered_log in filtered_logs for r in filtered_log.rows
-        )
-    )
-    rows = tuple(
-        next(r for s in filtered_logs for r in s.rows if (r.residual_name, r.column) == key)
-        for key in keys
-    )
+    first: dict[tuple[str, int], Row] = {}
+    for row in (row for filtered_log in filtered_logs for row in filtered_log.rows):
+        first.setdefault((row.residual_name, row.column), row)
+    keys = list(first)
     deal = _parts(filtered_logs)
     groups: dict[tuple[int, int], int] = {}
-    parts: dict[tuple[int, int], int] = {
-        (log, chunk): i
-        for i, (log, chunk) in enumerate((g, c) for g, n in enumerate(deal) for c in range(n))
-    }
+    chunks = [(log, chunk) for log, count in enumerate(deal) for chunk in range(count)]
+    parts = {one: i for i, one in enumerate(chunks)}
     table: list[list[np.ndarray]] = [[] for _ in range(7)]
     where, start, blocks = [], 0, 0
     for number, filtered_log in enumerate(filtered_logs):
@@ -130,20 +123,11 @@ def gather(
             part = np.array([parts[number, c] for c in range(deal[number])])[chunk]
             residual = filtered_log.signals.residual[row.residual_name][:, row.column]
             values = filtered_log.sample(place, residual[None])[0]
-            for column, found in zip(
-                table,
-                (
-                    values,
-                    floors[number][place],
-                    share * information,
-                    np.full(len(band), overall),
-                    group,
-                    part,
-                    blocks + (time / BLOCK).astype(int),
-                ),
-                strict=True,
-            ):
-                column.append(found)
+            block = blocks + (time / BLOCK).astype(int)
+            labels = np.full(len(band), overall), group, part, block
+            found = values, floors[number][place], share * information, *labels
+            for column, own in zip(table, found, strict=True):
+                column.append(own)
             places.append(slice(start, start + len(band)))
             start += len(band)
         blocks += int(duration / BLOCK) + 1
@@ -152,7 +136,7 @@ def gather(
     log_of = np.array([log for log, _ in parts])
     return Samples(
         tuple(filtered_logs),
-        rows,
+        tuple(first.values()),
         joined[0],
         joined[1],
         joined[2],

@@ -92,35 +92,16 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         columns = np.zeros((k, found.shape[1]))
         columns[some] = (found[:-1] - found[-1]) / divide[some, None]
         constant = found[-1] - ((values - nulls) / usual) @ columns
-    declared = max(
-        (
-            float(kg[0])
-            for place, kg in subject.declared.payload.items()
-            if _same_place(subject, place, location)
-        ),
-        default=0.0,
-    )
+    payload = subject.declared.payload
+    masses = (float(payload[one][0]) for one in payload if _same_place(subject, one, location))
+    declared = max(masses, default=0.0)
     scaled = factor(samples, effect.identifier, location, usual, values)
     unseen = bool(effect.driver) and all(
         getattr(s.signals, effect.driver) is None for s in samples.filtered_logs
     )
-    return Cause(
-        effect.identifier,
-        location,
-        values,
-        nulls,
-        usual,
-        low,
-        high,
-        shape,
-        columns,
-        constant,
-        effect.linear,
-        declared,
-        scaled,
-        unseen,
-        subject.tree.beyond(location),
-    )
+    numbers = values, nulls, usual, low, high, shape, columns, constant
+    facts = effect.linear, declared, scaled, unseen, subject.tree.beyond(location)
+    return Cause(effect.identifier, location, *numbers, *facts)
 
 
 def _same_place(subject: Subject, one: str, other: str) -> bool:
@@ -133,11 +114,8 @@ def reach(samples: Samples, columns: np.ndarray) -> float:
     """Largest root mean square over the groups of columns `(k, S)` over the floor, summed over the
     columns.
     """
-    square = np.bincount(
-        samples.group,
-        samples.share * np.einsum("ks,ks->s", columns, columns) / np.square(samples.floor),
-        samples.groups,
-    )
+    squares = samples.share * np.einsum("ks,ks->s", columns, columns) / np.square(samples.floor)
+    square = np.bincount(samples.group, squares, samples.groups)
     number = np.bincount(samples.group, samples.share, samples.groups)
     return float(np.sqrt(np.max(square / np.maximum(number, 1e-9), initial=0.0)))
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
 
 JOINT_SIGNALS = ("position_target", "position", "velocity", "joint_torque")
 MOTOR_SIGNALS = (
@@ -63,6 +65,23 @@ def known_column(column: str) -> bool:
     return (kind == CONTACT and len(name) > 2 and name[-2:] in ("_x", "_y", "_z")) or (
         kind == BATTERY and not slash
     )
+
+
+def columns_of(signals: Mapping[str, np.ndarray], places: Sequence[str]) -> dict[str, np.ndarray]:
+    """Name the columns of signals of several places.
+
+    Args:
+        signals: `(t, places)` each.
+        places: names of the joints, motors or axes.
+
+    Returns:
+        Values `(t,)` by column.
+    """
+    return {
+        f"{signal}/{place}": values[:, i]
+        for signal, values in signals.items()
+        for i, place in enumerate(places)
+    }
 
 
 def misspelt(columns: Iterable[str]) -> tuple[str, str] | None:

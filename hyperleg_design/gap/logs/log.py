@@ -73,21 +73,15 @@ class Log:
         signals = {}
         for column, values in self.signals.items():
             if not known_column(column):
-                raise InputError(
-                    self.name,
-                    column,
-                    None,
+                remedy = (
                     "is no column of the log format: expects signal/name, such as "
-                    "position/left_knee",
+                    "position/left_knee"
                 )
+                raise InputError(self.name, column, None, remedy)
             signals[column] = _frozen(values, self.name, column)
             if signals[column].shape != time.shape:
-                raise InputError(
-                    self.name,
-                    column,
-                    signals[column].shape,
-                    f"expects one value a tick, {time.shape}",
-                )
+                remedy = f"expects one value a tick, {time.shape}"
+                raise InputError(self.name, column, signals[column].shape, remedy)
         object.__setattr__(self, "signals", signals)
 
     def has(self, kind: str, name: str = "") -> bool:
@@ -267,12 +261,8 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     except FileNotFoundError:
         raise InputError(str(path), "", None, "does not exist") from None
     except (pyarrow.ArrowException, OSError, ValueError) as error:
-        raise InputError(
-            path.name,
-            "",
-            None,
-            f"is no whole Parquet file ({in_short(error, 90)}): record or copy it again",
-        ) from None
+        remedy = f"is no whole Parquet file ({in_short(error, 90)}): record or copy it again"
+        raise InputError(path.name, "", None, remedy) from None
     return finished_log(path, time, signals, metadata_beside(path, _inside(inside, path)), remarks)
 
 
@@ -306,12 +296,8 @@ def finished_log(
         column.startswith("position/") and np.isfinite(values).any()
         for column, values in signals.items()
     ):
-        raise InputError(
-            path.name,
-            "position/...",
-            None,
-            "is missing: expects the measured angle of at least one joint, in position/JOINT",
-        )
+        remedy = "is missing: expects the measured angle of at least one joint, in position/JOINT"
+        raise InputError(path.name, "position/...", None, remedy)
     return Log(
         name or path.stem,
         time,
@@ -360,11 +346,7 @@ def _frozen(values: Any, where: str, column: str) -> np.ndarray:
     if array.ndim != 1:
         raise InputError(where, column, array.shape, "expects one value a tick")
     if np.isinf(array).any():
-        raise InputError(
-            where,
-            column,
-            float(array[np.isinf(array)][0]),
-            "expects finite numbers, NaN where unknown",
-        )
+        remedy = "expects finite numbers, NaN where unknown"
+        raise InputError(where, column, float(array[np.isinf(array)][0]), remedy)
     array.flags.writeable = False
     return array

@@ -111,6 +111,22 @@ class Metadata:
 
 
 FIELDS = tuple(f.name for f in dataclasses.fields(Metadata))
+NUMBERS: dict[str, tuple[int, Callable[[Any], bool], str]] = {
+    "gains": (
+        2,
+        lambda pair: min(pair) >= 0,
+        "expects [stiffness Nm/rad, damping Nms/rad], neither negative",
+    ),
+    "torque_constant": (0, lambda constant: constant > 0, "expects Nm/A, above 0"),
+    "supply": (
+        3,
+        lambda line: min(line) > 0,
+        "expects [supply V, stall torque Nm, no-load speed rad/s], all above 0",
+    ),
+    "payload": (4, lambda load: load[0] >= 0, "expects [mass kg, x, y, z m], mass not negative"),
+}
+"""Fields with numbers by name of a joint, motor or link: how many there are, 0 for a single one,
+which of them can be, and what is expected."""
 
 
 def metadata_from_mapping(content: Mapping[str, Any], where: str) -> Metadata:
@@ -136,17 +152,10 @@ def metadata_from_mapping(content: Mapping[str, Any], where: str) -> Metadata:
 
 def _checked(content: Mapping[str, Any], where: str) -> dict[str, Any]:
     checks: dict[str, Callable[[Any, str, str], Any]] = {
-        "robot": _text,
+        **dict.fromkeys(("robot", "base", "session", "role", "notes"), _text),
+        **dict.fromkeys(NUMBERS, _numbers_by_name),
         "overrides": _overrides,
-        "base": _text,
         "gravity": _gravity,
-        "gains": _gains,
-        "torque_constant": _torque_constants,
-        "supply": _supplies,
-        "payload": _payloads,
-        "session": _text,
-        "role": _text,
-        "notes": _text,
         "remarks": _texts,
     }
     values = {
@@ -154,9 +163,8 @@ def _checked(content: Mapping[str, Any], where: str) -> dict[str, Any]:
     }
     for key, allowed in (("base", BASES), ("role", ROLES)):
         if key in values and values[key] not in allowed:
-            raise InputError(
-                where, key, values[key], f"expects {' or '.join(a for a in allowed if a)}"
-            )
+            remedy = f"expects {' or '.join(a for a in allowed if a)}"
+            raise InputError(where, key, values[key], remedy)
     return values
 
 
@@ -220,60 +228,15 @@ def _gravity(value: Any, where: str, name: str) -> tuple[float, ...]:
     return found
 
 
-def _gains(value: Any, where: str, name: str) -> dict[str, tuple[float, ...]]:
+def _numbers_by_name(value: Any, where: str, name: str) -> dict[str, Any]:
+    count, fits, remedy = NUMBERS[name]
     found = {}
-    for joint, pair in _mapping(value, where, name).items():
-        found[joint] = _numbers(pair, 2, where, f"{name}.{joint}")
-        if min(found[joint]) < 0:
-            raise InputError(
-                where,
-                f"{name}.{joint}",
-                pair,
-                "expects [stiffness Nm/rad, damping Nms/rad], neither negative",
-            )
-    return found
-
-
-def _torque_constants(value: Any, where: str, name: str) -> dict[str, float]:
-    found = {
-        motor: _number(constant, where, f"{name}.{motor}")
-        for motor, constant in _mapping(value, where, name).items()
-    }
-    for motor, constant in found.items():
-        if constant <= 0:
-            raise InputError(where, f"{name}.{motor}", constant, "expects Nm/A, above 0")
-    return found
-
-
-def _supplies(value: Any, where: str, name: str) -> dict[str, tuple[float, ...]]:
-    found = {
-        motor: _numbers(numbers, 3, where, f"{name}.{motor}")
-        for motor, numbers in _mapping(value, where, name).items()
-    }
-    for motor, numbers in found.items():
-        if min(numbers) <= 0:
-            raise InputError(
-                where,
-                f"{name}.{motor}",
-                value[motor],
-                "expects [supply V, stall torque Nm, no-load speed rad/s], all above 0",
-            )
-    return found
-
-
-def _payloads(value: Any, where: str, name: str) -> dict[str, tuple[float, ...]]:
-    found = {}
-    for link, numbers in _mapping(value, where, name).items():
-        flat = (
-            [numbers[0], *numbers[1]]
-            if isinstance(numbers, list | tuple)
-            and len(numbers) == 2
-            and isinstance(numbers[1], list | tuple)
-            else numbers
-        )
-        found[link] = _numbers(flat, 4, where, f"{name}.{link}")
-        if found[link][0] < 0:
-            raise InputError(
-                where, f"{name}.{link}", numbers, "expects [mass kg, x, y, z m], mass not negative"
-            )
+    for key, numbers in _mapping(value, where, name).items():
+        place, flat = f"{name}.{key}", numbers
+        if name == "payload" and isinstance(flat, list | tuple) and len(flat) == 2:
+            mass, com = flat
+            flat = [mass, *com] if isinstance(com, list | tuple) else flat
+        found[key] = _numbers(flat, count, where, place) if count else _number(flat, where, place)
+        if not fits(found[key]):
+            raise InputError(where, place, numbers, remedy)
     return found

@@ -36,12 +36,8 @@ def parquet_columns(
 
     schema = file.schema_arrow
     if "t" not in schema.names:
-        raise InputError(
-            path.name,
-            "t",
-            list(schema.names)[:6],
-            "is missing: expects the time in seconds in a column t",
-        )
+        remedy = "is missing: expects the time in seconds in a column t"
+        raise InputError(path.name, "t", list(schema.names)[:6], remedy)
     if wrong := misspelt(schema.names):
         raise InputError(
             path.name, wrong[0], None, f"is no column of the log format; did you mean {wrong[1]}?"
@@ -66,14 +62,10 @@ def parquet_columns(
     if not rows:
         raise InputError(path.name, "", None, "is an empty log: it has no rows")
     others = [c for c in schema.names if c not in wanted and not c.startswith("__")]
-    remarks = (
-        [
-            f"columns that the format does not know were left out: "
-            f"{', '.join(others[:8])}{' ...' if len(others) > 8 else ''}"
-        ]
-        if others
-        else []
-    )
+    remarks = []
+    if others:
+        some = ", ".join(others[:8]) + (" ..." if len(others) > 8 else "")
+        remarks.append(f"columns that the format does not know were left out: {some}")
     chosen, size = chosen_blocks(rows, len(wanted)), blocks.BLOCK_ROWS
     parts: dict[str, list[np.ndarray]] = {c: [] for c in wanted}
     start = 0

@@ -24,6 +24,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.result import Evaluation
 from hyperleg_design.evaluation.rollout import Trial
+from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.robot.models import quaternion_matrix
@@ -31,24 +32,18 @@ from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.simulation.drives.actuation import ActuationModel, actuation_model
 from hyperleg_design.simulation.drives.told import TOLD
-from hyperleg_design.simulation.environment import Environment
 from hyperleg_design.simulation.layout import GRAVITY, Layout
-from hyperleg_design.simulation.rollout import Recording
 from hyperleg_design.writing import output_folder, write_text
 
-TRIAL_SIGNALS = (
-    "base_position",
-    "base_orientation",
-    "base_velocity",
-    "base_angular_velocity",
-    "joint_target",
-    "joint_position",
-    "joint_velocity",
-    "driven_joint_torque",
-    "motor_torque",
-    "motor_velocity",
-    "pad_force",
-)
+JOINT_SIGNALS = {
+    "position_target": "joint_target",
+    "position": "joint_position",
+    "velocity": "joint_velocity",
+    "joint_torque": "driven_joint_torque",
+}
+"""Signal of a simulation by that of a log."""
+BASE = ("base_position", "base_orientation", "base_velocity", "base_angular_velocity")
+TRIAL_SIGNALS = (*BASE, *JOINT_SIGNALS.values(), "motor_torque", "motor_velocity", "pad_force")
 """Of a simulation that a log is made of; `base_angular_velocity` and `joint_target` may be
 missing."""
 
@@ -71,7 +66,7 @@ def log_of_trial(
     """
     found = {n: getattr(trial, n) for n in TRIAL_SIGNALS} | dict(trial.told)
     extra = {"outcome": trial.outcome, "end_time": trial.end_time}
-    return _log(
+    return log_of_signals(
         trial.design,
         trial.layout,
         trial.time_step,
@@ -79,41 +74,6 @@ def log_of_trial(
         name,
         {"extra": extra, **(metadata or {})},
     )
-
-
-def log_of_recording(environment: Environment, recording: Recording, simulation: int = 0) -> Log:
-    """Make the log of one simulation of `simulation.rollout.rollout`, up to the end of its first
-    episode.
-
-    Args:
-        environment: that was recorded.
-        recording: with all signals.
-        simulation: which.
-
-    Returns:
-        The log.
-
-    Raises:
-        InputError: no such simulation, or a signal that was not kept.
-    """
-    count = len(recording.first_end)
-    if not 0 <= simulation < count:
-        raise InputError("recording", "simulation", simulation, f"expects 0 .. {count - 1}")
-    missing = [n for n in TRIAL_SIGNALS if n not in recording.signals]
-    if missing:
-        raise InputError("recording", "signals", missing[0], "was not kept; record with keep=None")
-    design = (
-        environment.design.take(simulation)
-        if environment.design.batch_shape
-        else environment.design
-    )
-    rows = int(recording.first_end[simulation]) * recording.substeps
-    found = {
-        n: values[simulation, :rows]
-        for n, values in recording.signals.items()
-        if n in TRIAL_SIGNALS or n.startswith(TOLD)
-    }
-    return _log(design, environment.layout, recording.time_step, found, "rollout", {})
 
 
 def write_logs(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]) -> list[Path]:
@@ -143,17 +103,12 @@ def write_logs(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]
             for index, trial in enumerate(one.trials):
                 if trial.samples < 2:
                     continue
-                robot = _robot_file(trial.design, robots)
-                said = {
-                    "robot": robot,
-                    "session": stem,
-                    "notes": f"trial {index} of {one.protocol.name} with {one.policy}, simulated",
-                }
-                write_log(
-                    place / f"{stem}_{index:03d}.parquet",
-                    log_of_trial(trial, name=f"{stem}_{index:03d}", metadata=said),
-                )
-                names.append(f"{stem}_{index:03d}.parquet")
+                name = f"{stem}_{index:03d}"
+                notes = f"trial {index} of {one.protocol.name} with {one.policy}, simulated"
+                said = {"robot": _robot_file(trial.design, robots), "session": stem, "notes": notes}
+                log = log_of_trial(trial, name=name, metadata=said)
+                write_log(place / f"{name}.parquet", log)
+                names.append(f"{name}.parquet")
         for robot, text in robots.items():
             write_text(place / robot, text)
     return [Path(folder) / name for name in names]
@@ -167,11 +122,8 @@ def _robot_file(design: RobotDesign, robots: dict[str, str]) -> str:
     for name, known in robots.items():
         if known == text:
             return name
-    name = (
-        f"{_file_name(design.name)}.yaml"
-        if f"{_file_name(design.name)}.yaml" not in robots
-        else f"{_file_name(design.name)}_{len(robots)}.yaml"
-    )
+    stem = _file_name(design.name)
+    name = f"{stem}.yaml" if f"{stem}.yaml" not in robots else f"{stem}_{len(robots)}.yaml"
     robots[name] = text
     return name
 
@@ -182,7 +134,7 @@ def _file_name(name: str) -> str:
     )
 
 
-def _log(
+def log_of_signals(
     design: RobotDesign,
     layout: Layout,
     time_step: float,
@@ -190,28 +142,41 @@ def _log(
     name: str,
     said: Mapping[str, Any],
 ) -> Log:
+    """Make the log of the signals of one simulation.
+
+    Args:
+        design: the robot.
+        layout: of its simulation.
+        time_step: of the simulation [s].
+        found: `TRIAL_SIGNALS`, and what drives and sensors tell, `(t, ...)` each.
+        name: of the log.
+        said: fields of `Metadata` to replace.
+
+    Returns:
+        The log.
+
+    Raises:
+        InputError: fewer than two samples.
+    """
     rows = len(found["joint_position"])
     if rows < 2:
         raise InputError(name, "samples", rows, "ended at once: a log needs two samples at least")
     model, limbs = actuation_model(design), len(layout.limbs)
     found = _as_told(model, limbs, found)
-    signals = (
-        _joint_signals(design, layout, found)
-        | _motor_signals(design, layout, found)
-        | _base_signals(found, time_step)
-    )
-    signals |= _contact_signals(layout, found["pad_force"])
+    known = {kind: found[n] for kind, n in JOINT_SIGNALS.items() if n in found}
+    signals = columns_of(known, layout.joints) | _motor_signals(design, layout, found)
+    signals |= _base_signals(found, time_step) | _contact_signals(layout, found["pad_force"])
     pairs = np.tile(np.column_stack([model.stiffness, model.damping]), (limbs, 1)).tolist()
     gains = {joint: (k, d) for joint, (k, d) in zip(layout.joints, pairs, strict=True)}
     constants = dict(zip(layout.motors, _torque_constants(design, layout).tolist(), strict=True))
-    known: dict[str, Any] = {
+    metadata: dict[str, Any] = {
         "robot": design.name,
         "base": "floating",
         "gains": gains,
         "torque_constant": constants,
         "gravity": (0, 0, -GRAVITY),
     }
-    return Log(name, np.arange(rows) * time_step, signals, Metadata(**(known | dict(said))))
+    return Log(name, np.arange(rows) * time_step, signals, Metadata(**(metadata | dict(said))))
 
 
 def _as_told(
@@ -235,31 +200,14 @@ def _as_told(
     return found
 
 
-def _joint_signals(
-    design: RobotDesign, layout: Layout, found: Mapping[str, np.ndarray]
-) -> dict[str, np.ndarray]:
-    kinds = {
-        "position_target": "joint_target",
-        "position": "joint_position",
-        "velocity": "joint_velocity",
-        "joint_torque": "driven_joint_torque",
-    }
-    return {
-        f"{kind}/{joint}": found[n][:, i]
-        for kind, n in kinds.items()
-        if n in found
-        for i, joint in enumerate(layout.joints)
-    }
-
-
 def _motor_signals(
     design: RobotDesign, layout: Layout, found: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
     columns = {
         "motor_torque": found["motor_torque"],
         "motor_current": found["motor_torque"] / _torque_constants(design, layout),
+        "motor_velocity": found["motor_velocity"],
     }
-    columns["motor_velocity"] = found["motor_velocity"]
     if "motor_command" in found:
         columns = {"motor_torque_command": found["motor_command"], **columns}
     elif "joint_target" in found:
@@ -268,11 +216,7 @@ def _motor_signals(
         wanted = model.stiffness * error - model.damping * found["joint_velocity"].reshape(legs)
         command = (wanted @ model.motor_from_joint.T).reshape(len(wanted), -1)
         columns = {"motor_torque_command": command, **columns}
-    return {
-        f"{kind}/{motor}": values[:, i]
-        for kind, values in columns.items()
-        for i, motor in enumerate(layout.motors)
-    }
+    return columns_of(columns, layout.motors)
 
 
 def _torque_constants(design: RobotDesign, layout: Layout) -> np.ndarray:
@@ -296,14 +240,7 @@ def _base_signals(found: Mapping[str, np.ndarray], time_step: float) -> dict[str
     }
     if "base_angular_velocity" in found:
         parts = {"gyro": _at_its_time(found["base_angular_velocity"]), **parts}
-    signals = {
-        f"{kind}/{axis}": values[:, i]
-        for kind, values in parts.items()
-        for i, axis in enumerate("xyz")
-    }
-    return signals | {
-        f"base_orientation/{axis}": orientation[:, i] for i, axis in enumerate("wxyz")
-    }
+    return columns_of(parts, "xyz") | columns_of({"base_orientation": orientation}, "wxyz")
 
 
 def _at_its_time(velocity: np.ndarray) -> np.ndarray:

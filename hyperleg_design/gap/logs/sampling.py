@@ -113,19 +113,8 @@ def _column(name: str, values: np.ndarray, rate: float) -> Column:
     missing = max(0.0, 1 - len(known) * every / len(values))
     held = held_rows(own)
     low, high = float(own.min()), float(own.max())
-    sampled = own[::held] if held > 1 else own
-    return Column(
-        name,
-        rate / (every * held),
-        missing,
-        low,
-        high,
-        quantum(own),
-        noise(sampled),
-        saturation(own),
-        low == high,
-        held,
-    )
+    facts = quantum(own), noise(own[::held] if held > 1 else own), saturation(own)
+    return Column(name, rate / (every * held), missing, low, high, *facts, low == high, held)
 
 
 def held_rows(values: np.ndarray) -> int:

@@ -39,13 +39,11 @@ def tidied(
         }
     if not known.all():
         if known.mean() < 0.5:
-            raise InputError(
-                name,
-                "t",
-                None,
+            remedy = (
                 f"is no number in {int((~known).sum())} of {len(known)} rows: expects a time in "
-                f"every row",
+                f"every row"
             )
+            raise InputError(name, "t", None, remedy)
         remarks.append(f"{int((~known).sum())} rows have no time and were left out")
         time, signals = time[known], {column: values[known] for column, values in signals.items()}
     first = np.concatenate([[True], np.diff(time) != 0])[: len(time)]
@@ -53,12 +51,10 @@ def tidied(
         return time, signals, tuple(remarks)
     repeats = int((~first).sum())
     if repeats > len(time) / 2:
-        raise InputError(
-            name,
-            "t",
-            None,
-            f"repeats in {repeats} of {len(time)} rows: the clock is too coarse or stands still",
+        remedy = (
+            f"repeats in {repeats} of {len(time)} rows: the clock is too coarse or stands still"
         )
+        raise InputError(name, "t", None, remedy)
     remarks.append(f"{repeats} rows repeat the time of the row before and were merged with it")
     starts = np.flatnonzero(first)
     ends = np.append(starts[1:], len(time))
@@ -90,9 +86,5 @@ def check_clock(time: np.ndarray, name: str) -> None:
     if len(back):
         row = int(back[0]) + 1
         found = f"{time[row]:.9g} s in row {row} after {time[row - 1]:.9g} s"
-        raise InputError(
-            name,
-            "t",
-            found,
-            "runs backwards or repeats: sort the rows, or split the recording there",
-        )
+        remedy = "runs backwards or repeats: sort the rows, or split the recording there"
+        raise InputError(name, "t", found, remedy)

@@ -37,15 +37,8 @@ def pads_of(model: Any, tree: Mechanism, feet: Mapping[str, int] | None = None) 
         label = model.geom(geom).name or f"{name}_{geom}"
         for index, point in enumerate(points):
             title = label if len(points) == 1 else f"{label}_{index}"
-            found.append(
-                Pad(
-                    title,
-                    foot,
-                    tree.links.index(name),
-                    (float(point[0]), float(point[1]), float(point[2])),
-                    radius,
-                )
-            )
+            place = float(point[0]), float(point[1]), float(point[2])
+            found.append(Pad(title, foot, tree.links.index(name), place, radius))
     return tuple(found)
 
 
@@ -61,13 +54,8 @@ def feet_of(model: Any, tree: Mechanism) -> tuple[tuple[str, ...], tuple[Pad, ..
         Names of the feet, and their pads.
     """
     names = [model.body(b).name for b in range(model.nbody)]
-    touching = {
-        int(b)
-        for b, *kinds in zip(
-            model.geom_bodyid, model.geom_contype, model.geom_conaffinity, strict=True
-        )
-        if any(kinds)
-    }
+    collides = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
+    touching = set(model.geom_bodyid[collides].tolist())
 
     def limb(body: int) -> bool:
         return names[body] in tree.links and tree.link_joint[tree.links.index(names[body])] != BASE

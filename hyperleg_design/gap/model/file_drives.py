@@ -83,12 +83,8 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
     limit = np.array([_force_limit(model, i) for i in usable])
     stiffness, damping = np.array([_feedback(model, i) for i in usable]).reshape(-1, 2).T
     armature = model.dof_armature[dofs]
-    effort = np.array(
-        [
-            max(abs(model.jnt_actfrcrange[j])) if model.jnt_actfrclimited[j] else np.inf
-            for j in single
-        ]
-    )
+    most = np.abs(model.jnt_actfrcrange[single]).max(1)
+    effort = np.where(model.jnt_actfrclimited[single] != 0, most, np.inf)
     gains = np.full((count, 2), np.nan)
     if np.all(np.count_nonzero(matrix, 0) <= 1):
         own = matrix != 0
@@ -125,12 +121,8 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
     rotor = np.array(model.actuator_armature[usable])
     couplings = []
     for tendon in tendons:
-        pulling = [
-            place
-            for place, i in enumerate(usable)
-            if model.actuator_trntype[i] == mujoco.mjtTrn.mjTRN_TENDON
-            and model.actuator_trnid[i, 0] == tendon.index
-        ]
+        by_tendon = model.actuator_trntype[usable] == mujoco.mjtTrn.mjTRN_TENDON
+        pulling = np.flatnonzero(by_tendon & (model.actuator_trnid[usable, 0] == tendon.index))
         if len(pulling) == 1:  # the motor turns gear times as fast as the tendon lengthens
             ratio = float(model.actuator_gear[usable[pulling[0]], 0])
             rotor[pulling[0]] += tendon.armature / ratio**2

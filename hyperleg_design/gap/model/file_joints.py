@@ -23,10 +23,8 @@ def _single(model: Any) -> tuple[np.ndarray, np.ndarray]:
     """Joints that are hinges or slides, and their velocities."""
     import mujoco
 
-    joints = np.flatnonzero(
-        (model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE)
-        | (model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE)
-    )
+    kinds = mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE
+    joints = np.flatnonzero(np.isin(model.jnt_type, kinds))
     return joints, np.asarray(model.jnt_dofadr)[joints]
 
 
@@ -53,9 +51,8 @@ def springs(model: Any) -> tuple[np.ndarray, np.ndarray]:
         Stiffness [Nm/rad] and rest position [rad], `(n,)` each.
     """
     joints, _ = _single(model)
-    return np.array(model.jnt_stiffness[joints]), np.array(
-        model.qpos_spring[model.jnt_qposadr[joints]]
-    )
+    rest = model.qpos_spring[model.jnt_qposadr[joints]]
+    return np.array(model.jnt_stiffness[joints]), np.array(rest)
 
 
 def limits(model: Any) -> tuple[np.ndarray, np.ndarray]:

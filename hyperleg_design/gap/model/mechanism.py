@@ -18,7 +18,6 @@ from hyperleg_design.errors import InputError, meant
 
 if TYPE_CHECKING:
     import mujoco
-    import pinocchio
 
 BASE = -1
 """Place of the base (or, of a fixed one, the world) among the joints."""
@@ -182,21 +181,13 @@ def mechanism_of(model: mujoco.MjModel) -> Mechanism:
             moving = True
             if kind == kinds.mjJNT_FREE:
                 if above != 0 or floating:
-                    raise InputError(
-                        "robot",
-                        name or "free joint",
-                        None,
-                        "is not the root's; one floating base can be understood",
-                    )
+                    remedy = "is not the root's; one floating base can be understood"
+                    raise InputError("robot", name or "free joint", None, remedy)
                 floating, carrier, rotation, offset = True, BASE, np.eye(3), np.zeros(3)
                 continue
             if kind == kinds.mjJNT_BALL:
-                raise InputError(
-                    "robot",
-                    name,
-                    "ball",
-                    "ball joints are not understood; model it as three hinges",
-                )
+                remedy = "ball joints are not understood; model it as three hinges"
+                raise InputError("robot", name, "ball", remedy)
             anchor = offset + rotation @ model.jnt_pos[joint]
             axes = _axes_with_z(rotation @ model.jnt_axis[joint])
             rows["parent"].append(carrier)
@@ -308,51 +299,6 @@ def quaternion_rotation(wxyz: np.ndarray) -> np.ndarray:
     turned = np.full((len(rows), 3, 3), np.nan)
     turned[known] = Rotation.from_quat(rows[known], scalar_first=True).as_matrix()
     return turned.reshape(*q.shape[:-1], 3, 3)
-
-
-def pinocchio_model(tree: Mechanism, gravity: np.ndarray) -> pinocchio.Model:
-    """Build a Pinocchio model of the same tree; `q` is measured from `reference`, and rotors are
-    left out.
-
-    Configurations are base position and quaternion (x y z w), where the base floats, then joints.
-    Frames have the names of links.
-
-    Args:
-        tree: the robot.
-        gravity: in the world [m/s^2], `(3,)`.
-
-    Returns:
-        The model.
-    """
-    import pinocchio as pin
-
-    model: Any = pin.Model()
-    model.gravity.linear = np.asarray(gravity, float)
-    root = 0
-    if tree.floating:
-        root = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "floating_base")
-        model.appendBodyToJoint(root, _pin_inertia(tree.base_inertial), pin.SE3.Identity())
-    places: list[int] = []
-    for index, name in enumerate(tree.joints):
-        kind = pin.JointModelRZ() if tree.hinge[index] else pin.JointModelPZ()
-        above = root if tree.parent[index] == BASE else places[tree.parent[index]]
-        places.append(
-            model.addJoint(above, kind, pin.SE3(tree.rotation[index], tree.offset[index]), name)
-        )
-        model.appendBodyToJoint(places[-1], _pin_inertia(tree.inertial[index]), pin.SE3.Identity())
-    for index, name in enumerate(tree.links):
-        carrier = int(tree.link_joint[index])
-        place = pin.SE3(tree.link_rotation[index], tree.link_offset[index])
-        model.addFrame(
-            pin.Frame(name, root if carrier == BASE else places[carrier], place, pin.FrameType.BODY)
-        )
-    return model
-
-
-def _pin_inertia(parameters: np.ndarray) -> Any:
-    import pinocchio as pin
-
-    return pin.Inertia(*mass_properties(parameters))
 
 
 def _about_origin(parameters: np.ndarray) -> np.ndarray:

@@ -192,13 +192,11 @@ def set_base(spec: Any, wanted: str | None, path: Path) -> str:
         return "fixed"
     if wanted == "floating" and not own:
         if list(robot.joints):
-            raise InputError(
-                str(path),
-                "base",
-                "floating",
+            remedy = (
                 f"its root, {robot.name}, hangs on a joint; give the file a root link that can "
-                f"float",
+                f"float"
             )
+            raise InputError(str(path), "base", "floating", remedy)
         robot.add_freejoint(name="floating_base")
         return "floating"
     return "floating" if own else "fixed"
@@ -235,12 +233,8 @@ def kept_joints(every: Sequence[str], known: Collection[str] | None, where: str)
     """
     kept = [name for name in every if known is None or name in known]
     if known is not None and not kept:
-        raise InputError(
-            where,
-            "joints",
-            sorted(known)[:8],
-            f"are joints of another robot; its own are {', '.join(every)}",
-        )
+        remedy = f"are joints of another robot; its own are {', '.join(every)}"
+        raise InputError(where, "joints", sorted(known)[:8], remedy)
     return kept
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from hyperleg_design.errors import InputError, meant
 from hyperleg_design.gap.logs.metadata import STANDARD_GRAVITY, Metadata
 from hyperleg_design.gap.model.body_inertia import add_mass
-from hyperleg_design.gap.model.mechanism import Mechanism, mechanism_of, pinocchio_model
+from hyperleg_design.gap.model.mechanism import Mechanism, mechanism_of
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.parameters.described import RobotDesign, prefixed
 from hyperleg_design.robot.transmission import motor_names
@@ -23,7 +23,6 @@ from hyperleg_design.simulation.drives.actuation import motor_from_joint
 
 if TYPE_CHECKING:
     import mujoco
-    import pinocchio
 
 
 @dataclass(frozen=True)
@@ -173,11 +172,6 @@ class Subject:
     def pad_foot(self) -> np.ndarray:
         """Index of the foot of each pad `(P,)`."""
         return np.array([pad.foot for pad in self.pads], int)
-
-    @cached_property
-    def pinocchio(self) -> pinocchio.Model:
-        """Pinocchio model of the same tree, see `mechanism.pinocchio_model`."""
-        return pinocchio_model(self.tree, self.gravity)
 
     def declare(self, metadata: Metadata) -> Subject:
         """Apply the gains, torque constants, supplies, payload and gravity that one log declares.

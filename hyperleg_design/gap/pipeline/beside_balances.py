@@ -12,7 +12,14 @@ from hyperleg_design.gap.inference.detectors.sinking import SINKS
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.inference.detectors.slipping import SLIPS
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
-from hyperleg_design.gap.results.diagnosis import MOST_RIVALS, Diagnosis, Named, Place, Shrinkage
+from hyperleg_design.gap.results.diagnosis import (
+    MOST_RIVALS,
+    Diagnosis,
+    Named,
+    Place,
+    Shrinkage,
+    residual_shape,
+)
 
 APART = (OFFSET, SLIPS, SINKS)
 """Shapes by which such causes are known."""
@@ -44,18 +51,9 @@ def of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:
             _surer(c, offset) if (c.effect, c.location) == PLACE else c for c in told.causes
         )
         return told if causes == told.causes else replace(told, causes=causes)
-    shape = {
-        "shape": OFFSET,
-        "location": PLACE[1],
-        "says": offset.says,
-        "closed_beyond": offset.closed,
-        "gain": 0.0,
-    }
-    told = replace(
-        told,
-        residual_shape=(shape, *told.residual_shape),
-        rivals=tuple(r for r in told.rivals if (r.effect, r.location) != PLACE),
-    )
+    shape = residual_shape(OFFSET, PLACE[1], offset.says, offset.closed)
+    rivals = tuple(r for r in told.rivals if (r.effect, r.location) != PLACE)
+    told = replace(told, residual_shape=(shape, *told.residual_shape), rivals=rivals)
     cause = Named(*PLACE, 1 - OTHER_SENSOR, offset.closed, offset.parameters)
     if told.causes:
         return told if offset.leans else replace(told, causes=(*told.causes, cause))
@@ -96,30 +94,16 @@ def of_feet(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
     feet = [one for one in feet if one.name not in {(c.effect, c.location) for c in told.causes}]
     if not feet:
         return told
-    noted = (
-        {
-            "shape": one.shape,
-            "location": one.foot,
-            "says": one.says,
-            "closed_beyond": one.closed,
-            "gain": 0.0,
-        }
-        for one in feet
-    )
+    noted = (residual_shape(one.shape, one.foot, one.says, one.closed) for one in feet)
     effects = {one.effect for one in feet}
-    told = replace(
-        told,
-        residual_shape=(*noted, *told.residual_shape),
-        rivals=tuple(r for r in told.rivals if r.effect not in effects),
-    )
+    rivals = tuple(r for r in told.rivals if r.effect not in effects)
+    told = replace(told, residual_shape=(*noted, *told.residual_shape), rivals=rivals)
     causes = tuple(Named(*one.name, 1 - OTHER_GROUND, one.closed, one.parameters) for one in feet)
     if told.causes:
         return replace(told, causes=(*told.causes, *causes))
-    theirs = sum(
-        w.share
-        for w in told.where
-        if w.regime == "all" and w.kind == "foot" and w.location in {one.foot for one in feet}
-    )
+    names = {one.foot for one in feet}
+    under = (w for w in told.where if w.regime == "all" and w.kind == "foot")
+    theirs = sum(w.share for w in under if w.location in names)
     if told.verdict == "unknown" and theirs < OF_FEET:
         return _with_part(told, causes[0])
     weight = sum(one.weight for one in feet)
@@ -127,24 +111,16 @@ def of_feet(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
     after = sum(one.weight * one.left**2 for one in feet) / weight
     closed = 1 - (after / before) ** 0.5
     gap = Shrinkage(before**0.5, after**0.5, 0.0, closed, (closed, closed), feet[0].unit)
-    return _instead(
-        told,
-        causes,
-        gap,
-        tuple(
-            Place(one.foot, "foot", "all", one.weight * one.size**2 / (before * weight))
-            for one in feet
-        ),
-    )
+    shares = (one.weight * one.size**2 / (before * weight) for one in feet)
+    where = (Place(o.foot, "foot", "all", share) for o, share in zip(feet, shares, strict=True))
+    return _instead(told, causes, gap, tuple(where))
 
 
 def _with_part(told: Diagnosis, cause: Named) -> Diagnosis:
     """An unknown gap, of which a cause may be a part."""
     beside = sum(r.probability for r in told.rivals)
-    return replace(
-        told,
-        rivals=(replace(cause, probability=max(1 - beside, 0.0) / 2), *told.rivals)[:MOST_RIVALS],
-    )
+    part = replace(cause, probability=max(1 - beside, 0.0) / 2)
+    return replace(told, rivals=(part, *told.rivals)[:MOST_RIVALS])
 
 
 def _instead(
@@ -172,10 +148,6 @@ def _without_creep(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
         return told
     sets = tuple(group for group in told.equivalent if not soft.intersection(group))
     verdict = "explained" if told.verdict == "ambiguous" and not sets else told.verdict
-    return replace(
-        told,
-        verdict=verdict,
-        causes=kept,
-        equivalent=sets,
-        separating_experiment=told.separating_experiment if sets else None,
-    )
+    experiment = told.separating_experiment if sets else None
+    told = replace(told, verdict=verdict, causes=kept, equivalent=sets)
+    return replace(told, separating_experiment=experiment)

@@ -63,12 +63,8 @@ def diagnose(
     well = [*(log for log in logs if log.metadata.role == "reference"), *reference]
     healthy = [log.changed(metadata=replace(log.metadata, role="reference")) for log in well]
     if not tests:
-        raise InputError(
-            "diagnose",
-            "logs",
-            len(logs),
-            "name no log to be diagnosed: give at least one that is not a reference",
-        )
+        remedy = "name no log to be diagnosed: give at least one that is not a reference"
+        raise InputError("diagnose", "logs", len(logs), remedy)
     subject, before = subjects(robot, reference_robot, tests, healthy)
     checks = [
         *(check_log(log, subject) for log in tests),
@@ -113,22 +109,16 @@ def subjects(
         subject = load_subject(robot, [*tests, *references])
         return subject, subject
     if not references:
-        raise InputError(
-            "diagnose",
-            "reference_robot",
-            str(reference_robot),
-            "needs reference logs: name them with --reference",
-        )
+        remedy = "needs reference logs: name them with --reference"
+        raise InputError("diagnose", "reference_robot", str(reference_robot), remedy)
     subject, before = load_subject(robot, tests), load_subject(reference_robot, references)
     for what in ("joints", "motors"):
         now, then = getattr(subject, what), getattr(before, what)
         if now != then:
-            raise InputError(
-                "diagnose",
-                "reference_robot",
-                str(reference_robot),
-                f"has other {what} than {subject.name}: {', '.join(then)}, not {', '.join(now)}",
+            remedy = (
+                f"has other {what} than {subject.name}: {', '.join(then)}, not {', '.join(now)}"
             )
+            raise InputError("diagnose", "reference_robot", str(reference_robot), remedy)
     return subject, before
 
 

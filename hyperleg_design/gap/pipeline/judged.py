@@ -30,10 +30,13 @@ from hyperleg_design.gap.results.diagnosis import (
     Named,
     Place,
     Shrinkage,
+    residual_shape,
 )
 from hyperleg_design.gap.results.finding import NOTE, WARNING
 from hyperleg_design.gap.signals.signals import RESIDUALS, Signals
 
+WORST = -9.99
+"""Share closed that is told at least: far below 0, a number says nothing more."""
 CLEAR = 2.0
 """Standard deviations from its null from which a place of an effect at all places is named."""
 
@@ -171,14 +174,9 @@ class _Answer:
             deviation = self.rules.posterior.interval * hypothesis.deviation(place)
             clear = np.abs(values - cause.nulls) / np.maximum(deviation, 1e-300)
             stands = float(np.max(np.where(cause.shape, 0.0, clear)))
-            named = Named(
-                cause.effect,
-                cause.location,
-                probability,
-                self.closed_by(hypothesis, place),
-                intervals(cause, values, deviation, subject),
-            )
-            found.append((stands, named))
+            closed = self.closed_by(hypothesis, place)
+            told = intervals(cause, values, deviation, subject)
+            found.append((stands, Named(cause.effect, cause.location, probability, closed, told)))
         clear_ones = [named for stands, named in found if stands >= CLEAR]
         return clear_ones or [max(found, key=lambda one: one[0])[1]]
 
@@ -192,7 +190,7 @@ class _Answer:
         own = cause.trace(hypothesis.theta[hypothesis.parts[place]])
         alone = size.total(size.squares(size.held.before - (size.held.trace - own)))
         whole = alone if cause.standing else size.total(size.before)
-        return max(size.share_closed(alone, whole), -9.99)
+        return max(size.share_closed(alone, whole), WORST)
 
     def rivals(self) -> tuple[Named, ...]:
         """Other candidates, most probable first."""
@@ -204,11 +202,8 @@ class _Answer:
 
     def told(self, one: Named) -> bool:
         """Whether a rival is a cause of the most probable hypothesis itself."""
-        return any(
-            (cause.effect, cause.location) == (one.effect, one.location)
-            for cause in self.posterior.hypothesis.causes
-            if not cause.standing
-        )
+        acting = (cause for cause in self.posterior.hypothesis.causes if not cause.standing)
+        return (one.effect, one.location) in {(cause.effect, cause.location) for cause in acting}
 
     def gap(self, naming: bool) -> Shrinkage:
         """Before, after and floor over the channels that count, in their unit."""
@@ -220,14 +215,10 @@ class _Answer:
             low, high = (float(v) for v in np.percentile(size.drawn(self.seed), [2.5, 97.5]))
         else:
             after = before
-        return Shrinkage(
-            before * size.expected,
-            after * size.expected,
-            min(size.lowest, after) * size.expected,
-            max(closed, -9.99),
-            (max(min(low, closed), -9.99), max(high, closed)),
-            size.unit,
-        )
+        floor = min(size.lowest, after)
+        before, after, floor = (value * size.expected for value in (before, after, floor))
+        interval = max(min(low, closed), WORST), max(high, closed)
+        return Shrinkage(before, after, floor, max(closed, WORST), interval, size.unit)
 
     def where(self) -> tuple[Place, ...]:
         """Shares of the excess by place."""
@@ -272,43 +263,28 @@ class _Answer:
     def shape(self) -> tuple[dict[str, Any], ...]:
         """Channels in which something unlisted acts."""
         left = np.maximum(self.size.after - self.size.noise, 0.0)
-        found = [
-            {
-                "shape": "limit cycle",
-                "location": joint,
-                "says": f"swings to and fro at {frequency:.0f} Hz (or a frequency that the log's "
-                "rate folds there), which nothing commands: its control loop is on the edge of "
-                "stability",
-                "closed_beyond": 0.0,
-                "gain": 0.0,
-            }
-            for joint, frequency in self.cycling.items()
-        ]
-        found.extend(
-            {
-                "shape": cause.effect,
-                "location": cause.location,
-                "says": description,
-                "closed_beyond": self.posterior.remainder,
-                "gain": 0.0,
-            }
-            for cause, description in self.odd()
-            if not cause.standing
-        )
+        found = []
+        for joint, frequency in self.cycling.items():
+            says = (
+                f"swings to and fro at {frequency:.0f} Hz (or a frequency that the log's rate "
+                f"folds there), which nothing commands: its control loop is on the edge of "
+                f"stability"
+            )
+            found.append(residual_shape("limit cycle", joint, says, 0.0))
+        remainder = self.posterior.remainder
+        for cause, says in self.odd():
+            if not cause.standing:
+                found.append(residual_shape(cause.effect, cause.location, says, remainder))
         for place in np.argsort(-left, kind="stable").tolist()[:3]:
             if left[place] <= 0 or self.posterior.remainder <= 0:
                 continue
             one = self.evidence.channels[place]
-            says = f"the {one.residual} residual of {one.name} is left larger or of another shape"
-            found.append(
-                {
-                    "shape": "unlisted",
-                    "location": one.name,
-                    "says": says + " than a healthy robot's, and no listed effect says why",
-                    "closed_beyond": float(left[place] / max(left.sum(), 1e-300)),
-                    "gain": 0.0,
-                }
+            says = (
+                f"the {one.residual} residual of {one.name} is left larger or of another shape "
+                f"than a healthy robot's, and no listed effect says why"
             )
+            share = float(left[place] / max(left.sum(), 1e-300))
+            found.append(residual_shape("unlisted", one.name, says, share))
         return tuple(found)
 
     def remarks(self, checks: Sequence[Check]) -> tuple[str, ...]:

@@ -112,14 +112,9 @@ def _squares(signals: Sequence[Signals], overlay: Overlay, keeps_targets: bool) 
     squares = []
     for one in signals:
         changes: Sequence[Any] = [(), overlay.alterations(one.subject)]
-        position, _ = replay(one, changes, short_windows(one), keeps_targets=keeps_targets).errors(
-            one
-        )
-        squares.append(
-            np.nanmean(position**2, axis=2)
-            if position.size
-            else np.zeros((2, 0, len(one.subject.joints)))
-        )
+        made = replay(one, changes, short_windows(one), keeps_targets=keeps_targets)
+        position, _ = made.errors(one)
+        squares.append(np.nanmean(position**2, axis=2))
     return np.concatenate(squares, 1)
 
 
@@ -152,21 +147,10 @@ def walked(
             continue
         first, second = before.values(name), after.values(name)
         both = np.isfinite(first) & np.isfinite(second)
-        nan = float("nan")
         one = statistics.estimate([second[both] - first[both]]) if both.sum() > 1 else None
-        mean, low, high = (one.mean, one.low, one.high) if one else (nan, nan, nan)
-        changes.append(
-            Changed(
-                name,
-                measure_of(name).unit,
-                _mean(first),
-                _mean(second),
-                mean,
-                low,
-                high,
-                int(both.sum()),
-            )
-        )
+        interval = (one.mean, one.low, one.high) if one else (float("nan"),) * 3
+        means = _mean(first), _mean(second)
+        changes.append(Changed(name, measure_of(name).unit, *means, *interval, int(both.sum())))
     return changes
 
 

@@ -36,11 +36,8 @@ def base_states(
             "tij,tpj->tpi", rotation, pad_points(subject, signals.position[ticks], rotation)
         )
         low = points[..., 2].min(1) if points.shape[1] else np.zeros(len(ticks))
-        place = np.where(
-            np.isfinite(place),
-            place,
-            np.stack([np.zeros(len(ticks)), np.zeros(len(ticks)), -low], -1),
-        )
+        on_ground = np.stack([np.zeros(len(ticks)), np.zeros(len(ticks)), -low], -1)
+        place = np.where(np.isfinite(place), place, on_ground)
     if not np.isfinite(velocity).all():
         velocity = np.where(np.isfinite(velocity), velocity, _still_foot_velocity(signals, ticks))
     quaternion = np.zeros((len(ticks), 4))

@@ -90,12 +90,5 @@ def evidence(
     elif residual_name in OF_MOTORS:
         speed = signals.velocity @ signals.subject.joint_from_motor
     empty = np.where(known, 0.0, np.nan)
-    return Evidence(
-        signals.log.name,
-        residual_name,
-        row_names(signals.subject, residual_name),
-        signals.time,
-        before + empty,
-        made + empty,
-        speed,
-    )
+    names, before, made = row_names(signals.subject, residual_name), before + empty, made + empty
+    return Evidence(signals.log.name, residual_name, names, signals.time, before, made, speed)

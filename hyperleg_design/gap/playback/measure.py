@@ -151,11 +151,9 @@ def _rows(group: Sequence[Sheet], floors: dict[tuple[str, str, str], np.ndarray]
     key = (first.signal, first.kind)
     names = first.names
     default = floors.get((*key, "all"), np.zeros(len(names)))
-    size = (
-        np.sqrt(np.nanmean(np.square([s.size for s in group]), 0))
-        if np.isfinite(group[0].size).any()
-        else np.full(len(names), np.nan)
-    )
+    size = np.full(len(names), np.nan)
+    if np.isfinite(group[0].size).any():
+        size = np.sqrt(np.nanmean(np.square([s.size for s in group]), 0))
     whole = 0.0
     squares: dict[str, np.ndarray] = {}
     rows: list[tuple[int, Row]] = []
@@ -177,23 +175,8 @@ def _rows(group: Sequence[Sheet], floors: dict[tuple[str, str, str], np.ndarray]
         for k, name in enumerate(names):
             if not ticks[k]:
                 continue
+            what = first.signal, first.unit, first.kind, name, regime
             part = float(min(share[k], 1.0)) if np.isfinite(share[k]) else 0.0
-            rows.append(
-                (
-                    k,
-                    Row(
-                        first.signal,
-                        first.unit,
-                        first.kind,
-                        name,
-                        regime,
-                        float(gap[k]),
-                        float(floor[k]),
-                        float(mean[k]),
-                        part,
-                        float(size[k]),
-                        int(ticks[k]),
-                    ),
-                )
-            )
+            numbers = float(gap[k]), float(floor[k]), float(mean[k]), part, float(size[k])
+            rows.append((k, Row(*what, *numbers, int(ticks[k]))))
     return [row for _, row in sorted(rows, key=lambda pair: pair[0])]

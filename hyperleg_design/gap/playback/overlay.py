@@ -49,11 +49,11 @@ class Overlay:
     """Of the effects: plain values, for people."""
 
     def __post_init__(self) -> None:
-        checked = {}
-        for (identifier, location), values in self.change.items():
-            checked[identifier, location] = _checked(
-                self.robot or "overlay", f"{identifier} at {location}", identifier, values
-            )
+        where = self.robot or "overlay"
+        checked = {
+            (effect, place): _checked(where, f"{effect} at {place}", effect, values)
+            for (effect, place), values in self.change.items()
+        }
         object.__setattr__(self, "change", checked)
 
     def alterations(self, robot: Subject | RobotDesign) -> tuple[Alteration, ...]:
@@ -81,12 +81,8 @@ class Overlay:
             {"effect": e, "location": place, "parameters": dict(values)}
             for (e, place), values in self.change.items()
         ]
-        return {
-            "schema": SCHEMA,
-            "robot": self.robot,
-            "effects": effects,
-            "source": dict(self.source),
-        }
+        own = {"robot": self.robot, "effects": effects, "source": dict(self.source)}
+        return {"schema": SCHEMA, **own}
 
 
 def alterations(change: Change, subject: Subject) -> tuple[Alteration, ...]:
@@ -141,12 +137,8 @@ def overlay_from_mapping(content: Mapping[str, Any], where: str) -> Overlay:
     """
     _only(content, _KEYS, where, "")
     if content.get("schema") != SCHEMA:
-        raise InputError(
-            where,
-            "schema",
-            content.get("schema"),
-            f"expects {SCHEMA}; another version of hyperleg wrote this file",
-        )
+        remedy = f"expects {SCHEMA}; another version of hyperleg wrote this file"
+        raise InputError(where, "schema", content.get("schema"), remedy)
     entries = content.get("effects")
     source = content.get("source") or {}
     robot = content.get("robot", "")
@@ -202,14 +194,10 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
     path = path / "diagnosis.json" if path.is_dir() else path
     where = short_name(path)
     content = read_json(path)
-    if (
-        not isinstance(content, dict)
-        or content.get("schema") != 1
-        or not isinstance(content.get("causes"), list)
-    ):
-        raise InputError(
-            where, "", None, "is not a diagnosis: expects schema 1 and a list of causes"
-        )
+    told = content if isinstance(content, dict) else {}
+    if told.get("schema") != 1 or not isinstance(told.get("causes"), list):
+        remedy = "is not a diagnosis: expects schema 1 and a list of causes"
+        raise InputError(where, "", None, remedy)
     verdict = content.get("verdict")
     if not content["causes"]:
         raise InputError(where, "causes", [], f"there is nothing to add: the verdict is {verdict}")
@@ -223,18 +211,12 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
                 name: value["value"] for name, value in cause["parameters"].items() if name in own
             }
         except (TypeError, KeyError, AttributeError):
-            raise InputError(
-                where,
-                f"causes.{number}",
-                cause,
-                "expects effect, location and parameters, each with a value",
-            ) from None
+            remedy = "expects effect, location and parameters, each with a value"
+            raise InputError(where, f"causes.{number}", cause, remedy) from None
         if not values:
+            remedy = f"none is a parameter of {key[0]}: {', '.join(own)}"
             raise InputError(
-                where,
-                f"causes.{number}.parameters",
-                sorted(cause["parameters"]),
-                f"none is a parameter of {key[0]}: {', '.join(own)}",
+                where, f"causes.{number}.parameters", sorted(cause["parameters"]), remedy
             )
         change[key] = _checked(where, f"causes.{number}", key[0], values)
     gap = content.get("gap")
@@ -266,13 +248,5 @@ def _checked(where: str, place: str, identifier: Any, values: Any) -> dict[str, 
             or not math.isfinite(value)
         ):
             raise InputError(where, at, value, "expects a finite number")
-        parameter = known[name]
-        if not parameter.low <= value <= parameter.high:
-            raise InputError(
-                where,
-                at,
-                float(value),
-                f"expects {parameter.low:g} .. {parameter.high:g} {parameter.unit}".rstrip(),
-            )
-        found[name] = float(value)
+        found[name] = known[name].checked(float(value), where, at)
     return found

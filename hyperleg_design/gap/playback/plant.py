@@ -109,11 +109,8 @@ class Plant:
         self._softness = step * self.model.dof_invweight0[self._first :]
         self._damping = self.batch.expand("dof_damping")
         self._own_damping = self._damping.copy()
-        self._tendon_damping = (
-            self.batch.expand("tendon_damping")
-            if motor_tendons(subject) and damps_motors(alterations)
-            else None
-        )
+        by_tendons = motor_tendons(subject) and damps_motors(alterations)
+        self._tendon_damping = self.batch.expand("tendon_damping") if by_tendons else None
         self.alive = np.arange(count)
 
     def start(

@@ -118,18 +118,8 @@ def replay(
     follow = follow or best_input(signals)
     inputs = _inputs(signals, follow)
     substeps = max(int(np.ceil(signals.step / LONGEST_STEP - 1e-9)), 1)
-    runs = [
-        _run(
-            signals,
-            _alterations(change, signals.subject),
-            windows,
-            follow,
-            inputs,
-            keeps_targets and follow == "target",
-            substeps,
-        )
-        for change in changes
-    ]
+    how = windows, follow, inputs, keeps_targets and follow == "target", substeps
+    runs = [_run(signals, _alterations(change, signals.subject), *how) for change in changes]
     return Replay(windows, *(np.stack([run[i] for run in runs]) for i in range(4)))
 
 
@@ -147,9 +137,8 @@ def _inputs(signals: Signals, follow: str) -> np.ndarray:
     """
     if follow not in INPUTS:
         raise InputError("replay", "follow", follow, f"expects one of {', '.join(INPUTS)}")
-    found = {"target": signals.target, "command": signals.command, "torque": signals.believed}[
-        follow
-    ]
+    known = {"target": signals.target, "command": signals.command, "torque": signals.believed}
+    found = known[follow]
     if found is None:
         raise InputError(
             signals.log.name, follow, None, f"is not in this log; it has {best_input(signals)}"
@@ -169,21 +158,12 @@ def _run(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     subject, ticks = signals.subject, windows.ticks
     count, length = ticks.shape
-    plant = Plant(
-        subject,
-        alterations,
-        count,
-        signals.step / substeps,
-        wrong_limits(subject, signals.position),
-    )
+    unlimited = wrong_limits(subject, signals.position)
+    plant = Plant(subject, alterations, count, signals.step / substeps, unlimited)
     first, half = windows.start, signals.step / substeps / 2
-    base, base_velocity = base_states(signals, first, half) if subject.floating else (None, None)
-    plant.start(
-        signals.position[first],
-        signals.velocity[first] - half * signals.acceleration[first],
-        base,
-        base_velocity,
-    )
+    base = base_states(signals, first, half) if subject.floating else (None, None)
+    begun = signals.velocity[first] - half * signals.acceleration[first]
+    plant.start(signals.position[first], begun, *base)
     joints, motors = len(subject.joints), len(subject.motors)
     change = np.zeros((count, joints))
     position = np.full((count, length, joints), np.nan)

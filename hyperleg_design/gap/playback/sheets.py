@@ -122,11 +122,9 @@ def _sheet(
     """Sheet of a residual; `own` is the signal itself, whose size tells what the residual means."""
     predicted = signal in ("position", "velocity")
     regimes = regimes_of(signals, kind, names, None if predicted else own)
-    size = (
-        np.full(len(names), np.nan)
-        if own is None
-        else root_mean_square(np.where(signals.valid[:, None], own, np.nan))
-    )
+    size = np.full(len(names), np.nan)
+    if own is not None:
+        size = root_mean_square(np.where(signals.valid[:, None], own, np.nan))
     if predicted:
         floor = _smoothing_error(signals, signal, kind)
         return Sheet(signal, kind, unit, names, residual, floor, size, regimes, {})

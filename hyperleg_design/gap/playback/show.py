@@ -127,12 +127,8 @@ def show(
     places = one.locations(subject)
     if location is None:
         if not places:
-            raise InputError(
-                identifier,
-                "robot",
-                subject.name,
-                f"has no {one.kind} for it; choose another --robot",
-            )
+            remedy = f"has no {one.kind} for it; choose another --robot"
+            raise InputError(identifier, "robot", subject.name, remedy)
         location = places[-1] if one.kind == "link" and not standing else places[0]
     location = one.place(location, subject)
     values = _values(one, location, subject, settings)
@@ -175,13 +171,8 @@ def _subject(robot: str | None, standing: bool) -> Subject:
         return subject
     blank = np.zeros(2)
     joints = {f"position/{name}": blank for name in subject.joints}
-    base = Log(
-        "standard motion",
-        np.array([0.0, 1.0]),
-        joints,
-        Metadata(base="floating" if standing else "fixed"),
-    )
-    return load_subject(name, [base])
+    metadata = Metadata(base="floating" if standing else "fixed")
+    return load_subject(name, [Log("standard motion", np.array([0.0, 1.0]), joints, metadata)])
 
 
 def _values(one: Effect, location: str, subject: Subject, settings: Sequence[str]) -> np.ndarray:
@@ -193,17 +184,10 @@ def _values(one: Effect, location: str, subject: Subject, settings: Sequence[str
             remedy = f"expects PARAMETER=VALUE; {meant(name, known)}"
             raise InputError("set", setting, None, remedy)
         try:
-            values[known[name]] = float(text)
+            value = float(text)
         except ValueError:
             raise InputError("set", name, text, "expects a number") from None
-        parameter = one.parameters[known[name]]
-        if not parameter.low <= values[known[name]] <= parameter.high:
-            raise InputError(
-                "set",
-                name,
-                text,
-                f"expects {parameter.low:g} .. {parameter.high:g} {parameter.unit}".rstrip(),
-            )
+        values[known[name]] = one.parameters[known[name]].checked(value, "set", name)
     return values
 
 
@@ -256,14 +240,10 @@ def _told(one: Effect, log: Log, values: np.ndarray) -> Log:
     """The log as the robot's own inertial sensor would have told it."""
     if one.kind != "sensor":
         return log
-    bias = {
-        f"{kind}/{axis}": values[3 * k + i]
-        for k, kind in enumerate(("gyro", "accelerometer"))
-        for i, axis in enumerate("xyz")
-    }
-    return dataclasses.replace(
-        log, signals={name: column + bias.get(name, 0.0) for name, column in log.signals.items()}
-    )
+    columns = (parameter.name.replace("_", "/") for parameter in one.parameters)
+    bias = dict(zip(columns, values, strict=True))
+    signals = {name: column + bias.get(name, 0.0) for name, column in log.signals.items()}
+    return dataclasses.replace(log, signals=signals)
 
 
 def _largest(
@@ -281,20 +261,12 @@ def _largest(
         size = np.sqrt(np.where(np.isfinite(rows), rows, 0.0) ** 2).mean(0)
         place = int(np.argmax(size))
         if size[place] > NOTHING:
-            unit = (
-                ("N" if place < 3 else "Nm")
-                if residual_name == "base"
-                else RESIDUALS[residual_name][1]
-            )
-            residual = np.where(
-                np.isfinite(rows[:, place]), signals.residual[residual_name][:, place], np.nan
-            )
-            return (
-                residual_name,
-                row_names(signals.subject, residual_name)[place],
-                unit,
-                rows[:, place],
-                residual,
-            )
+            unit = RESIDUALS[residual_name][1]
+            if residual_name == "base":
+                unit = "N" if place < 3 else "Nm"
+            trace, residual = rows[:, place], signals.residual[residual_name][:, place]
+            residual = np.where(np.isfinite(trace), residual, np.nan)
+            name = row_names(signals.subject, residual_name)[place]
+            return residual_name, name, unit, trace, residual
     unknown = np.full(len(signals.time), np.nan)
     return "", "", "Nm", unknown, unknown

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.model.machine import machine_of
@@ -52,12 +53,8 @@ def simulated_log(
     pose = np.array(plant.model.qpos0[None, :7]) if subject.floating else None
     if pose is not None:
         pose[0, 2] += _lift(plant.model, subject, target[0])
-    plant.start(
-        target[:1],
-        np.zeros((1, len(subject.joints))),
-        pose,
-        np.zeros((1, 6)) if subject.floating else None,
-    )
+    at_rest = np.zeros((1, len(subject.joints)))
+    plant.start(target[:1], at_rest, pose, np.zeros((1, 6)) if subject.floating else None)
     model = plant.batch.get_model(0)
     data = mujoco.MjData(model)
     warmth, battery = _conditions(subject, time)
@@ -160,12 +157,8 @@ def _log(
         columns[f"motor_temperature/{motor}"] = warmth[:, place]
     if subject.floating:
         columns |= _base_columns(subject, time, found)
-    metadata = Metadata(
-        robot=subject.path,
-        base=subject.base,
-        gains=subject.known_gains,
-        notes="standard motion, simulated",
-    )
+    gains, notes = subject.known_gains, "standard motion, simulated"
+    metadata = Metadata(robot=subject.path, base=subject.base, gains=gains, notes=notes)
     return Log("standard motion", time, columns, metadata)
 
 
@@ -185,18 +178,13 @@ def _base_columns(
     rotation = quaternion_rotation(pose[:, 3:7])
     acceleration = np.gradient(moving[:, :3], time, axis=0) - subject.gravity
     into = np.einsum("tij,jk->tik", rotation, subject.imu_rotation)
-    named = {
-        "base_position": (pose[:, :3], "xyz"),
-        "base_orientation": (pose[:, 3:7], "wxyz"),
-        "base_velocity": (moving[:, :3], "xyz"),
-        "gyro": (moving[:, 3:] @ subject.imu_rotation, "xyz"),
-        "accelerometer": (np.einsum("tij,ti->tj", into, acceleration), "xyz"),
+    vectors = {
+        "base_position": pose[:, :3],
+        "base_velocity": moving[:, :3],
+        "gyro": moving[:, 3:] @ subject.imu_rotation,
+        "accelerometer": np.einsum("tij,ti->tj", into, acceleration),
     }
-    columns = {
-        f"{kind}/{axis}": values[:, i]
-        for kind, (values, axes) in named.items()
-        for i, axis in enumerate(axes)
-    }
+    columns = columns_of(vectors, "xyz") | columns_of({"base_orientation": pose[:, 3:7]}, "wxyz")
     for index, pad in enumerate(subject.pads):
         columns |= {
             f"contact_force/{pad.name}_{axis}": found["force"][:, 3 * index + i]

@@ -63,10 +63,6 @@ def whole_log(signals: Signals) -> Windows:
     """
     valid = np.flatnonzero(signals.valid)
     if len(valid) < 2:
-        raise InputError(
-            signals.log.name,
-            "t",
-            len(valid),
-            "ticks are fit for use: the log is all gaps, or too short",
-        )
+        remedy = "ticks are fit for use: the log is all gaps, or too short"
+        raise InputError(signals.log.name, "t", len(valid), remedy)
     return Windows(valid[:1], int(valid[-1] - valid[0]))

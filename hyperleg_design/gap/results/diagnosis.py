@@ -6,13 +6,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import MISSING, asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_json, short_name
-from hyperleg_design.writing import write_json
 
 SCHEMA = 1
 VERDICTS = ("explained", "ambiguous", "none", "unknown")
@@ -62,17 +61,7 @@ class Named:
         Returns:
             Nested mappings.
         """
-        values = {
-            n: {"value": p.value, "low": p.low, "high": p.high, "unit": p.unit}
-            for n, p in self.parameters.items()
-        }
-        return {
-            "effect": self.effect,
-            "location": self.location,
-            "probability": self.probability,
-            "closed": self.closed,
-            "parameters": values,
-        }
+        return asdict(self)
 
 
 @dataclass(frozen=True)
@@ -107,6 +96,22 @@ class Place:
     """Of the squared excess; in a regime, of that of its place."""
 
 
+def residual_shape(shape: str, location: str, says: str, closed_beyond: float) -> dict[str, Any]:
+    """Make one of the shapes that a diagnosis lists.
+
+    Args:
+        shape: its name.
+        location: joint, motor, foot or sensor.
+        says: what was seen, in a sentence that goes on from the location.
+        closed_beyond: share of the gap beyond all causes that it explains.
+
+    Returns:
+        Its fields.
+    """
+    told = {"shape": shape, "location": location, "says": says, "closed_beyond": closed_beyond}
+    return told | {"gain": 0.0}
+
+
 @dataclass(frozen=True)
 class Diagnosis:
     """The answer of a diagnosis: verdict, gap, causes, rivals, and what to do next."""
@@ -131,9 +136,6 @@ class Diagnosis:
     """What the residual that no cause explains looks like, the largest first."""
     checks: tuple[str, ...] = ()
     """Remarks on the logs."""
-    at_rest: tuple[Mapping[str, Any], ...] = ()
-    """Joints that hold more than all known friction while they stand: `location`, `torque` beyond
-    it [Nm], and `says`."""
     sensitivity: tuple[Mapping[str, Any], ...] = ()
     """Smallest change of each effect's parameters that these logs would have shown, see
     `sensitivity`."""
@@ -153,60 +155,16 @@ class Diagnosis:
         Returns:
             Nested mappings; numbers are rounded to `DIGITS` significant digits.
         """
-        gap = {
-            "before": self.gap.before,
-            "after": self.gap.after,
-            "floor": self.gap.floor,
-            "closed": self.gap.closed,
-            "closed_interval": list(self.gap.closed_interval),
-            "unit": self.gap.unit,
-        }
-        found = {
-            "schema": SCHEMA,
-            "verdict": self.verdict,
-            "gap": gap,
-            "where": [
-                {"location": w.location, "kind": w.kind, "regime": w.regime, "share": w.share}
-                for w in self.where
-            ],
-            "causes": [c.mapping() for c in self.causes],
-            "rivals": [r.mapping() for r in self.rivals],
-            "equivalent": [
-                [{"effect": e, "location": p} for e, p in group] for group in self.equivalent
-            ],
-            "separating_experiment": None
-            if self.separating_experiment is None
-            else dict(self.separating_experiment),
-            "not_judged": [dict(one) for one in self.not_judged],
-            "residual_shape": [dict(one) for one in self.residual_shape],
-            "checks": list(self.checks),
-            "at_rest": [dict(one) for one in self.at_rest],
-            "sensitivity": [dict(one) for one in self.sensitivity],
-            "nuisance": [dict(one) for one in self.nuisance],
-            "provenance": dict(self.provenance),
-        }
-        if self.remainder is not None:
-            found["remainder"] = self.remainder
-        if self.lacks is not None:
-            found["lacks"] = dict(self.lacks)
-        rounded: dict[str, Any] = _rounded(found)
+        content = {"schema": SCHEMA, **asdict(self)}
+        content["equivalent"] = [
+            [{"effect": effect, "location": place} for effect, place in group]
+            for group in self.equivalent
+        ]
+        for name in ("remainder", "lacks"):
+            if content[name] is None:
+                del content[name]
+        rounded: dict[str, Any] = _rounded(content)
         return rounded
-
-
-def write_diagnosis(path: str | Path, diagnosis: Diagnosis) -> Path:
-    """Write a diagnosis as JSON, whole or not at all.
-
-    Args:
-        path: of the file.
-        diagnosis: the diagnosis.
-
-    Returns:
-        The path.
-
-    Raises:
-        OutputError: it cannot be written, or a number in it is not finite.
-    """
-    return write_json(path, diagnosis.mapping())
 
 
 def read_diagnosis(path: str | Path) -> Diagnosis:
@@ -224,66 +182,35 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
     path = Path(path)
     where = short_name(path)
     content = read_json(path)
-    if not isinstance(content, dict) or content.get("schema") != SCHEMA:
-        found = content.get("schema") if isinstance(content, dict) else None
-        raise InputError(
-            where,
-            "schema",
-            found,
-            f"expects {SCHEMA}: this is no diagnosis, or one of another version",
-        )
-    if content.get("verdict") not in VERDICTS:
-        raise InputError(
-            where, "verdict", content.get("verdict"), f"expects one of {', '.join(VERDICTS)}"
-        )
+    found = content.get("schema") if isinstance(content, dict) else None
+    if found != SCHEMA:
+        remedy = f"expects {SCHEMA}: this is no diagnosis, or one of another version"
+        raise InputError(where, "schema", found, remedy)
+    if (verdict := content.get("verdict")) not in VERDICTS:
+        raise InputError(where, "verdict", verdict, f"expects one of {', '.join(VERDICTS)}")
     try:
-        gap = content["gap"]
-        low, high = gap["closed_interval"]
-        numbers = {name: float(gap[name]) for name in ("before", "after", "floor", "closed")}
-        return Diagnosis(
-            verdict=content["verdict"],
-            gap=Shrinkage(
-                **numbers, closed_interval=(float(low), float(high)), unit=str(gap["unit"])
-            ),
-            where=tuple(
-                Place(str(w["location"]), str(w["kind"]), str(w["regime"]), float(w["share"]))
-                for w in content["where"]
-            ),
-            causes=_named(content["causes"]),
-            rivals=_named(content["rivals"]),
-            equivalent=tuple(
-                tuple((str(m["effect"]), str(m["location"])) for m in group)
-                for group in content["equivalent"]
-            ),
-            separating_experiment=content["separating_experiment"],
-            not_judged=tuple(content.get("not_judged", ())),
-            residual_shape=tuple(content.get("residual_shape", ())),
-            checks=tuple(content.get("checks", ())),
-            at_rest=tuple(content.get("at_rest", ())),
-            sensitivity=tuple(content.get("sensitivity", ())),
-            nuisance=tuple(content.get("nuisance", ())),
-            provenance=dict(content.get("provenance", {})),
-            remainder=None if content.get("remainder") is None else float(content["remainder"]),
-            lacks=content.get("lacks"),
+        values: dict[str, Any] = {
+            field.name: tuple(value) if isinstance(value, list) else value
+            for field in fields(Diagnosis)
+            if (value := content.get(field.name, field.default)) is not MISSING
+        }
+        interval = tuple(content["gap"]["closed_interval"])
+        values["gap"] = Shrinkage(**{**content["gap"], "closed_interval": interval})
+        values["where"] = tuple(Place(**place) for place in content["where"])
+        values["causes"], values["rivals"] = _named(content["causes"]), _named(content["rivals"])
+        values["equivalent"] = tuple(
+            tuple((one["effect"], one["location"]) for one in group)
+            for group in content["equivalent"]
         )
+        return Diagnosis(**values)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise InputError(
-            where, "", None, f"is not a whole diagnosis ({type(error).__name__}: {error})"
-        ) from None
+        what = f"is not a whole diagnosis ({type(error).__name__}: {error})"
+        raise InputError(where, "", None, what) from None
 
 
 def _named(entries: Sequence[Mapping[str, Any]]) -> tuple[Named, ...]:
     return tuple(
-        Named(
-            str(one["effect"]),
-            str(one["location"]),
-            float(one["probability"]),
-            float(one["closed"]),
-            {
-                str(n): Value(float(p["value"]), float(p["low"]), float(p["high"]), str(p["unit"]))
-                for n, p in one["parameters"].items()
-            },
-        )
+        Named(**{**one, "parameters": {n: Value(**v) for n, v in one["parameters"].items()}})
         for one in entries
     )
 

@@ -50,12 +50,8 @@ def base_motion(
     )
     velocity, place = known(log, "base_velocity"), known(log, "base_position")
     if gyro is None and quaternion is None:
-        raise InputError(
-            log.name,
-            "gyro",
-            None,
-            "neither it nor base_orientation is logged: declare base fixed, or log one of them",
-        )
+        remedy = "neither it nor base_orientation is logged: declare base fixed, or log one of them"
+        raise InputError(log.name, "gyro", None, remedy)
     if felt is None and (quaternion is None or (velocity is None and place is None)):
         remedy = (
             "neither it nor base_velocity or base_position with base_orientation is logged: "
@@ -158,11 +154,9 @@ def orientation(log: Log, quaternion: np.ndarray, ticks: np.ndarray) -> Smooth:
     q = quaternion[told]
     length = np.linalg.norm(q, axis=1)
     if not np.all(np.abs(length - 1) < 0.1):
+        remedy = "is no unit quaternion: expects w, x, y, z"
         raise InputError(
-            log.name,
-            "base_orientation",
-            float(length[np.argmax(np.abs(length - 1))]),
-            "is no unit quaternion: expects w, x, y, z",
+            log.name, "base_orientation", float(length[np.argmax(np.abs(length - 1))]), remedy
         )
     flips = np.concatenate([[1.0], np.where(np.sum(q[1:] * q[:-1], 1) < 0, -1.0, 1.0)])
     return smooth(log.time[told], q * np.cumprod(flips)[:, None] / length[:, None], ticks)

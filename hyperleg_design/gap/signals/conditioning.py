@@ -32,6 +32,7 @@ from hyperleg_design.gap.signals.limit_cycle import limit_cycle
 from hyperleg_design.gap.signals.sensed import sensed_velocity
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.smoothing import Smooth, smooth
+from hyperleg_design.simulation import alteration
 
 EDGE = 4.0
 """Radians of the slowest smoother's crossover that are left out beside gaps and at the ends of a
@@ -79,12 +80,8 @@ def condition(log: Log, subject: Subject) -> Signals:
     motion = smooth(log.time, position, ticks, velocity)
     lacking = ~np.isfinite(motion.value).any(0)
     if lacking.all():
-        raise InputError(
-            log.name,
-            "position",
-            sorted(log.joints)[:8],
-            f"knows no joint of this robot, {', '.join(subject.joints)}",
-        )
+        remedy = f"knows no joint of this robot, {', '.join(subject.joints)}"
+        raise InputError(log.name, "position", sorted(log.joints)[:8], remedy)
     if lacking.any():
         notes.append(
             f"joints without positions in this log, taken to stand still: "
@@ -114,15 +111,12 @@ def condition(log: Log, subject: Subject) -> Signals:
     limited = None if command is None else limited_torque(subject, command, speed, voltage)
     believed, more = _believed(log, subject, measured, limited)
     notes += more
-    own = (
-        None
-        if base is None
-        else rigid.base_wrench(subject, motion.value, motion.first, motion.second, base)
-    )
+    moved = motion.value, motion.first, motion.second
+    own = None if base is None else rigid.base_wrench(subject, *moved, base)
     ground = contact.contacts(
         log, subject, ticks, motion.value, base, None if own is None else own[:, :3]
     )
-    needed = rigid.inverse_dynamics(subject, motion.value, motion.first, motion.second, base)
+    needed = rigid.inverse_dynamics(subject, *moved, base)
     shaken = limit_cycle(
         resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step
     )
@@ -130,12 +124,8 @@ def condition(log: Log, subject: Subject) -> Signals:
         subject, motion.value, motion.first, None if shaken is None else shaken.speed
     )
     if ground.pad_force is not None:
-        pushed, wrench = pads.contact_torque(
-            subject,
-            motion.value,
-            None if base is None else base.rotation,
-            np.nan_to_num(ground.pad_force),
-        )
+        rotation, force = None if base is None else base.rotation, np.nan_to_num(ground.pad_force)
+        pushed, wrench = pads.contact_torque(subject, motion.value, rotation, force)
         needed = needed - pushed
         if own is not None:
             residual["base"] = np.where(
@@ -212,12 +202,8 @@ def wrong_limits(subject: Subject, position: np.ndarray) -> np.ndarray:
     Returns:
         `(n,)`.
     """
-    return np.asarray(
-        (
-            (position < subject.position_low - NO_STOP)
-            | (position > subject.position_high + NO_STOP)
-        ).any(0)
-    )
+    below, above = subject.position_low - NO_STOP, subject.position_high + NO_STOP
+    return np.asarray(((position < below) | (position > above)).any(0))
 
 
 def at_stop(subject: Subject, position: np.ndarray) -> np.ndarray:
@@ -248,17 +234,8 @@ def limited_torque(
     Returns:
         The torques [Nm], `(t, m)`.
     """
-    torque = np.clip(torque, -subject.torque_limit, subject.torque_limit)
-    line = np.isfinite(subject.stall_torque) & np.isfinite(subject.no_load_speed)
-    if line.any():
-        stall = subject.stall_torque[line]
-        droop = stall / subject.no_load_speed[line] * speed[:, line]
-        stall = stall * over_nominal(subject, voltage)[:, line]
-        peak = subject.torque_limit[line]
-        torque[:, line] = np.clip(
-            np.maximum(np.minimum(torque[:, line], stall - droop), -stall - droop), -peak, peak
-        )
-    return torque
+    peak, stall, free = subject.torque_limit, subject.stall_torque, subject.no_load_speed
+    return alteration.limited(torque, speed, peak, stall, free, over_nominal(subject, voltage))
 
 
 def _command(
@@ -292,12 +269,8 @@ def _command(
         command = np.where(np.isfinite(command), command, torque)
     if subject.one_to_one and subject.passive.any():
         command[:, subject.passive] = 0.0
-    return (
-        (command if np.isfinite(command[:, _driven(subject)]).any() else None),
-        target,
-        control,
-        others,
-    )
+    known = np.isfinite(command[:, _driven(subject)]).any()
+    return command if known else None, target, control, others
 
 
 def _driven(subject: Subject) -> np.ndarray:
@@ -324,11 +297,9 @@ def _believed(
     log: Log, subject: Subject, measured: np.ndarray | None, limited: np.ndarray | None
 ) -> tuple[np.ndarray, list[str]]:
     if measured is None and limited is None:
-        lacks = (
-            "gains (in the metadata, or in the robot's file) for its targets"
-            if log.names("position_target")
-            else "targets"
-        )
+        lacks = "targets"
+        if log.names("position_target"):
+            lacks = "gains (in the metadata, or in the robot's file) for its targets"
         currents = log.names("motor_current")
         if currents and not np.isfinite(subject.torque_constant).any():
             lacks = f"torque_constant in the metadata for its currents, or {lacks}"
@@ -343,12 +314,8 @@ def _believed(
     else:
         believed = np.where(np.isfinite(measured).any(0), measured, limited)
     blind = ~np.isfinite(believed).any(0)
-    notes = (
-        [f"motors whose torque nothing tells: {_names(subject.motors, blind)}"]
-        if blind.any()
-        else []
-    )
-    return believed.copy(), notes
+    note = f"motors whose torque nothing tells: {_names(subject.motors, blind)}"
+    return believed.copy(), [note] if blind.any() else []
 
 
 def _voltage(log: Log, ticks: np.ndarray) -> np.ndarray | None:

@@ -76,12 +76,8 @@ def contacts(
     pad_names = [p.name for p in pads]
     for name in log.feet:
         if name not in feet and name not in pad_names:
-            raise InputError(
-                log.name,
-                "contact_force",
-                name,
-                f"is no foot of this robot; {meant(name, [*feet, *pad_names])}",
-            )
+            remedy = f"is no foot of this robot; {meant(name, [*feet, *pad_names])}"
+            raise InputError(log.name, "contact_force", name, remedy)
     if not feet:
         return Ground(None, None, None)
     if not log.feet:

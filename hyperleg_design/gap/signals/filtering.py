@@ -139,16 +139,11 @@ class FilteredLog:
             each stands for.
         """
         span = self.length * self.signals.step
-        parts = [
-            (
-                np.full(len(b.kept), b.index),
-                b.kept * (span / b.count),
-                np.full(len(b.kept), 2 * min(b.high - b.low, WIDEST) * span / b.count),
-            )
-            for b in self.bands[row]
-        ]
-        if not parts:
-            return np.zeros(0, int), np.zeros(0), np.zeros(0)
+        parts = [(np.zeros(0, int), np.zeros(0), np.zeros(0))]
+        for b in self.bands[row]:
+            numbers = 2 * min(b.high - b.low, WIDEST) * span / b.count
+            index, count = np.full(len(b.kept), b.index), np.full(len(b.kept), numbers)
+            parts.append((index, b.kept * (span / b.count), count))
         return tuple(np.concatenate(column) for column in zip(*parts, strict=True))  # type: ignore[return-value]
 
 
@@ -170,22 +165,13 @@ def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> Filtere
         for column in range(residual.shape[1]):
             mask = signals.valid & np.isfinite(residual[:, column])
             if residual_name == "motion" and resting is not None:
-                mask = moving(
-                    mask,
-                    resting[:, column],
-                    signals.step,
-                    rubs=bool(signals.subject.coulomb[column] > 0),
-                )
+                rubs = bool(signals.subject.coulomb[column] > 0)
+                mask = moving(mask, resting[:, column], signals.step, rubs=rubs)
             if mask.sum() < FEWEST:
                 continue
-            rows.append(
-                Row(
-                    residual_name,
-                    column,
-                    row_names(signals.subject, residual_name)[column],
-                    _cutoff(signals, residual_name, column),
-                )
-            )
+            name = row_names(signals.subject, residual_name)[column]
+            cutoff = _cutoff(signals, residual_name, column)
+            rows.append(Row(residual_name, column, name, cutoff))
             masks.append(mask)
     length = next_fast_len(len(signals.time), real=True)
     bands = tuple(
@@ -202,21 +188,16 @@ def _cutoff(signals: Signals, residual_name: str, column: int) -> float:
         return min(OF_BALANCE[residual_name], most)
     if residual_name not in ("motion", "transmission"):
         return min(HIGHEST, most)
-    joints = (
-        [column]
-        if residual_name == "motion"
-        else np.flatnonzero(signals.subject.joint_from_motor[:, column])
-    )
-    bandwidth = (
-        np.nan
-        if signals.bandwidth is None
-        else float(np.min(signals.bandwidth[joints], initial=np.inf))
-    )
+    joints, share = np.array([column]), OF_BANDWIDTH
+    if residual_name == "transmission":
+        joints = np.flatnonzero(signals.subject.joint_from_motor[:, column])
+        share = OF_SPEEDS
+    bandwidth = np.nan
+    if signals.bandwidth is not None:
+        bandwidth = float(np.min(signals.bandwidth[joints], initial=np.inf))
     if not np.isfinite(bandwidth):
         return min(WITHOUT_BANDWIDTH, most)
-    return min(
-        HIGHEST, (OF_BANDWIDTH if residual_name == "motion" else OF_SPEEDS) * bandwidth, most
-    )
+    return min(HIGHEST, share * bandwidth, most)
 
 
 def _bands(row: Row, mask: np.ndarray, length: int, step: float) -> tuple[Band, ...]:

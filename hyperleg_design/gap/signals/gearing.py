@@ -42,11 +42,9 @@ def on_the_joints_side(subject: Subject, logs: Sequence[Log]) -> Subject:
     if not subject.one_to_one or np.all(subject.gear == 1):
         return subject
     told = [kind for kind in KINDS if any(log.names(kind) for log in logs)]
-    ready = (
-        [signals for log in logs if (signals := _conditioned(log, subject)) is not None]
-        if told
-        else []
-    )
+    if not told:
+        return subject
+    ready = [signals for log in logs if (signals := _conditioned(log, subject)) is not None]
     scales = {
         k: 1 / subject.gear if k == "motor_velocity" else subject.gear
         for k in told

@@ -52,18 +52,13 @@ def load_subject(
     robot = str(robot) if robot else _agreed([m.robot for m in metadata], "robot", logs)
     base = base or _agreed([m.base for m in metadata], "base", logs)
     if not robot:
-        raise InputError(
-            "robot",
-            "",
-            None,
+        remedy = (
             "is not named: give --robot a design, an MJCF or a URDF, or name it in the logs' "
-            "metadata",
+            "metadata"
         )
-    chosen = (
-        tuple(overrides)
-        if overrides is not None
-        else next((m.overrides for m in metadata if m.overrides), ())
-    )
+        raise InputError("robot", "", None, remedy)
+    stated = next((m.overrides for m in metadata if m.overrides), ())
+    chosen = stated if overrides is None else tuple(overrides)
     path = _find(robot, logs, named)
     known = set().union(*(log.joints for log in logs)) if logs else None
     if path.suffix.lower() in (".yaml", ".yml"):
@@ -76,11 +71,8 @@ def load_subject(
         bare = of_file(path, base or None, known)
     for log in logs:
         _check_names(log, bare)
-    bare = (
-        dataclasses.replace(bare, voltage=_healthy_voltage(logs))
-        if np.isnan(bare.voltage)
-        else bare
-    )
+    if np.isnan(bare.voltage):
+        bare = dataclasses.replace(bare, voltage=_healthy_voltage(logs))
     bare = on_the_joints_side(bare, logs)
     return bare.declare(metadata[0]) if metadata else dataclasses.replace(bare, bare=bare)
 

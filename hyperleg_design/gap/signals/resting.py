@@ -75,14 +75,9 @@ def moving_ticks(signals: Signals, known: np.ndarray, resting: np.ndarray) -> np
     Returns:
         `(t, n)`.
     """
-    rubs = signals.subject.coulomb > 0
-    return np.stack(
-        [
-            moving(k, r, signals.step, rubs=bool(dry))
-            for k, r, dry in zip(known.T, resting.T, rubs, strict=True)
-        ],
-        -1,
-    )
+    rubs = (signals.subject.coulomb > 0).tolist()
+    joints = zip(known.T, resting.T, rubs, strict=True)
+    return np.stack([moving(k, r, signals.step, rubs=dry) for k, r, dry in joints], -1)
 
 
 def travelled(position: np.ndarray, still: np.ndarray) -> np.ndarray:
@@ -121,24 +116,16 @@ def sticking(signals: Signals) -> np.ndarray:
     )
     still = (moved < 2 * presliding(signals)) & ~shaken(signals)
     if signals.target is not None:
-        ahead = np.gradient(
-            uniform_filter1d(signals.target, span, axis=0, mode="nearest"), signals.step, axis=0
-        )
+        target = uniform_filter1d(signals.target, span, axis=0, mode="nearest")
+        ahead = np.gradient(target, signals.step, axis=0)
         led = np.abs(signals.velocity - ahead) <= ASTRAY * np.abs(ahead)
         # without a measured torque, whatever a servo's firmware does while it slows down would look
         # like friction
-        begun = (
-            True
-            if signals.measured is None
-            else np.abs(travelled(signals.position, still)) < UNDERWAY * presliding(signals)
-        )
-        still |= (
-            (np.abs(signals.velocity) < CREEP)
-            & ~led
-            & np.isfinite(ahead)
-            & ~shaken(signals)
-            & begun
-        )
+        creeps = (np.abs(signals.velocity) < CREEP) & ~led & np.isfinite(ahead) & ~shaken(signals)
+        if signals.measured is not None:
+            way = np.abs(travelled(signals.position, still))
+            creeps &= way < UNDERWAY * presliding(signals)
+        still |= creeps
     return np.asarray(
         maximum_filter1d(still.astype(np.uint8), 2 * round(AROUND / signals.step) + 1, axis=0) > 0
     )

@@ -102,8 +102,6 @@ def shaken(signals: Signals) -> np.ndarray:
     Returns:
         `(t, n)`.
     """
-    return (
-        np.zeros(signals.position.shape, bool)
-        if signals.limit_cycle is None
-        else np.asarray(signals.limit_cycle.speed > 0)
-    )
+    if signals.limit_cycle is None:
+        return np.zeros(signals.position.shape, bool)
+    return np.asarray(signals.limit_cycle.speed > 0)

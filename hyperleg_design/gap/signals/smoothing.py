@@ -131,14 +131,8 @@ def _with_rate(
         jerk, noise.level**2 * step, weight, np.pi / step * MOST_PER_SAMPLE
     )
     both = np.isfinite(value)
-    fitted = _fit(
-        time[both],
-        value[both],
-        ticks,
-        crossover,
-        jerk / max(noise.level**2, 1e-300),
-        (time[known] - late, rate[known], weight),
-    )
+    smooth, rates = jerk / max(noise.level**2, 1e-300), (time[known] - late, rate[known], weight)
+    fitted = _fit(time[both], value[both], ticks, crossover, smooth, rates)
     return fitted, Noise(noise.level, crossover)
 
 
@@ -193,13 +187,9 @@ def filled(values: np.ndarray) -> np.ndarray:
     Returns:
         `(t, k)`; 0 where nothing is known of a signal.
     """
-    return np.stack(
-        [
-            bridged(column) if np.isfinite(column).any() else np.zeros(len(column))
-            for column in values.T
-        ],
-        -1,
-    )
+    known = np.isfinite(values).any(0)
+    columns = zip(values.T, known, strict=True)
+    return np.stack([bridged(v) if some else np.zeros(len(v)) for v, some in columns], -1)
 
 
 def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: int) -> Noise:

@@ -13,8 +13,6 @@ Entry = Mapping[str, Any]
 """A cause, a rival or another entry, as `diagnosis.json` holds it."""
 NOTHING_LEFT = 0.995
 """Share closed that counts as the whole gap."""
-LEAST_CLOSED = 0.05
-"""Share of the excess that a cause must close to be said to close the gap."""
 
 MOST_SIZED, MOST_PLACES = 2, 3
 """Causes that a sentence tells with their sizes, and places of one effect that it names."""
@@ -201,23 +199,19 @@ def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
     texts, gap, remainder = [], diagnosis["gap"], diagnosis.get("remainder")
     if diagnosis["causes"]:
         closed = float(gap["closed"])
-        if closed < LEAST_CLOSED and diagnosis.get("at_rest"):
-            texts.append("In motion there is no gap beyond the noise floor.")
-        else:
-            low, high = (100 * float(v) for v in gap["closed_interval"])
-            much = "All" if closed >= NOTHING_LEFT else f"{100 * closed:.0f} %"
-            wide = f" (95 % interval {low:.0f} to {high:.0f} %)" if high - low >= 1 else ""
-            texts.append(
-                f"{much} of the gap beyond the noise floor is gone on data that the fit has not "
-                f"seen{wide}."
-            )
+        low, high = (100 * float(v) for v in gap["closed_interval"])
+        much = "All" if closed >= NOTHING_LEFT else f"{100 * closed:.0f} %"
+        wide = f" (95 % interval {low:.0f} to {high:.0f} %)" if high - low >= 1 else ""
+        texts.append(
+            f"{much} of the gap beyond the noise floor is gone on data that the fit has not "
+            f"seen{wide}."
+        )
     if remainder:
         texts.append(f"{100 * float(remainder):.0f} % of the gap is left that no effect explains.")
     if diagnosis["verdict"] == "unknown":
         nearest = [r for r in diagnosis["rivals"][:1] if float(r["probability"]) >= NEAREST]
         texts += [f"The nearest of all is {phrase(nearest)}." for _ in nearest]
         texts += left[:1]
-    texts += [f"At rest: {entry['says']}." for entry in diagnosis.get("at_rest", ())]
     lacks = diagnosis.get("lacks")
     if lacks and lacks.get("causes"):
         texts.append(

@@ -48,9 +48,10 @@ def effects_text(table: Sequence[Mapping[str, Any]]) -> str:
                 continue
             unit = f" {p['unit']}" if p["unit"] else ""
             shape = ", shapes the trace only" if p["shape"] else ""
+            of = " of its place's strength" if p["of_strength"] else unit
             lines.append(
-                f"    {p['name']}: {p['null']:g}{unit} without, usually {p['typical']:g}{unit} "
-                f"off, {p['low']:g} .. {p['high']:g}{unit}{shape}"
+                f"    {p['name']}: {p['null']:g}{unit} without, usually {p['typical']:g}{of} off, "
+                f"{p['low']:g} .. {p['high']:g}{unit}{shape}"
             )
             lines += textwrap.wrap(
                 p["source"], 110, initial_indent="        ", subsequent_indent="        "

@@ -237,9 +237,6 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     if remainder := diagnosis.get("remainder"):
         lines.append(f"  remainder: {100 * remainder:.0f} % of the gap, which no effect explains")
     lines += [
-        f"  at rest, which is in no residual: {one['says']}" for one in diagnosis.get("at_rest", ())
-    ]
-    lines += [
         f"  {one['location']} {one['says']}"
         for one in diagnosis.get("residual_shape", ())
         if one["shape"] in APART

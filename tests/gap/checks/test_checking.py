@@ -80,7 +80,8 @@ def test_command_line(tmp_path, capsys):
 
 
 def test_a_simulation_passes_the_check_against_its_own_robot(tmp_path):
-    from hyperleg_design.gap.logs.recording import log_of_recording
+    from recorded import log_of_recording
+
     from hyperleg_design.robot.design import load_design
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.rollout import rollout

@@ -13,9 +13,9 @@ from hyperleg_design.gap.effects.excitation import (
     REVERSALS,
     SWING,
     Motion,
-    at_drives,
-    at_joints,
+    Need,
     by_speeds,
+    shown_by,
 )
 
 JOINTS = np.array(["hip", "knee", "ankle"])
@@ -30,9 +30,13 @@ def motion(**changes) -> Motion:
     return Motion(joints=JOINTS, **(facts | known | changes))
 
 
+def need(passed, **options) -> Need:
+    return Need(lambda _: passed, "good", "lacking", **options)
+
+
 @given(FLAGS, FLAGS)
 def test_joints_show_what_they_pass_where_their_torque_is_known(passed, torque):
-    found = at_joints("spring", motion(torque=torque), passed, "good", "lacking")
+    found = shown_by("spring", need(passed), None, motion(torque=torque))
     expected = tuple(j for j, p, t in zip(JOINTS, passed, torque, strict=True) if p and t)
     assert found.where == expected
     assert found.shown == bool(expected)
@@ -45,7 +49,9 @@ def test_joints_show_what_they_pass_where_their_torque_is_known(passed, torque):
 
 @given(FLAGS, FLAGS, FLAGS)
 def test_drives_show_what_was_asked_and_best_what_was_measured_too(passed, asked, measured):
-    found = at_drives("delay", motion(asked=asked, measured=measured), passed, "good", "lacking")
+    found = shown_by(
+        "delay", need(passed, asked=True), None, motion(asked=asked, measured=measured)
+    )
     expected = tuple(j for j, p, a in zip(JOINTS, passed, asked, strict=True) if p and a)
     assert found.where == expected
     assert found.shown == bool(expected)
@@ -76,5 +82,8 @@ def test_speeds_of_motors_and_moving_joints_show_what_lies_between(motors, rever
     log = SimpleNamespace(
         motors=("m", "n"), has=lambda kind, name: kind == "motor_velocity" and name in motors
     )
-    found = by_speeds("backlash", log, motion(reversals=np.full(3, reversals)))
+    facts = motion(reversals=np.full(3, reversals))
+    found = by_speeds("backlash", log, facts)
     assert (None if found is None else found.where) == where
+    either = shown_by("backlash", need(np.ones(3, bool), speeds=True), log, facts)
+    assert either.where == (where or tuple(JOINTS))

@@ -2,10 +2,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.fit import Cause
-from hyperleg_design.gap.inference.parameters import intervals
+from hyperleg_design.gap.inference.parameters import NORMAL, intervals
 
 SUBJECT = SimpleNamespace(joints=("swing",), default=np.zeros(1))
 
@@ -66,3 +67,7 @@ def test_sizes_of_belts_are_no_better_known_than_their_traces():
     )
     doubtful = values_of("backlash", [0.02, 1.0, 1.0, 0.0], [0.004, 0, 0, 0])["angle"]
     assert doubtful.high - 0.02 == pytest.approx(1.96 * np.hypot(0.004, 0.003), rel=1e-6)
+
+
+def test_an_interval_holds_nineteen_in_twenty():
+    assert norm.cdf(NORMAL) - norm.cdf(-NORMAL) == pytest.approx(0.95, abs=1e-4)

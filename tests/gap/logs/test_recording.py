@@ -2,12 +2,13 @@ import dataclasses
 
 import numpy as np
 import pytest
+from recorded import log_of_recording
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.rollout import record
 from hyperleg_design.gap.checks.check import check_log
 from hyperleg_design.gap.logs.log import read_log
-from hyperleg_design.gap.logs.recording import log_of_recording, log_of_trial, write_logs
+from hyperleg_design.gap.logs.recording import log_of_trial, write_logs
 from hyperleg_design.gap.model.design_subject import subject_of
 from hyperleg_design.gap.playback.overlay import Overlay
 from hyperleg_design.gap.results.finding import ERROR

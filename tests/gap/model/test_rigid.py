@@ -1,5 +1,6 @@
 import mujoco
 import numpy as np
+from pinocchio_tree import pinocchio_model
 from random_motion import TICKS, random_motion
 
 from hyperleg_design.gap.model import rigid
@@ -18,7 +19,8 @@ def test_inverse_dynamics_is_mujocos_and_pinocchios(subject):
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT) | int(
         mujoco.mjtDisableBit.mjDSBL_SPRING
     )
-    data, other = mujoco.MjData(model), subject.pinocchio.createData()
+    tree = pinocchio_model(subject.tree, subject.gravity)
+    data, other = mujoco.MjData(model), tree.createData()
     n = len(subject.joints)
     for i in range(TICKS):
         own_q, own_v, own_a = q[i] - subject.tree.reference, v[i], a[i]
@@ -41,7 +43,7 @@ def test_inverse_dynamics_is_mujocos_and_pinocchios(subject):
             own_a = np.r_[linear, base.angular_acceleration[i], own_a]
         data.qpos[-n:], data.qvel[-n:], data.qacc[-n:] = q[i], v[i], a[i]
         mujoco.mj_inverse(model, data)
-        found = np.array(pin.rnea(subject.pinocchio, other, own_q, own_v, own_a))
+        found = np.array(pin.rnea(tree, other, own_q, own_v, own_a))
         np.testing.assert_allclose(torque[i], data.qfrc_inverse[-n:], atol=1e-9)
         np.testing.assert_allclose(torque[i], found[-n:] + subject.armature @ a[i], atol=1e-9)
         if base is not None:

@@ -6,7 +6,8 @@ import diagnosed
 import pytest
 
 from hyperleg_design.gap.pipeline.diagnose import diagnose
-from hyperleg_design.gap.results.diagnosis import SCHEMA_FILE, read_diagnosis, write_diagnosis
+from hyperleg_design.gap.results.diagnosis import SCHEMA_FILE, read_diagnosis
+from hyperleg_design.writing import write_json
 
 
 def found(robot_files, kind, seeds=(0, 1), references=(), threads=1):
@@ -78,7 +79,7 @@ def test_the_file_keeps_its_schema_and_reads_back(viscous, tmp_path):
     validate = pytest.importorskip("jsonschema").validate
     content = json.loads(json.dumps(viscous.mapping(), allow_nan=False))
     validate(content, json.loads(SCHEMA_FILE.read_text()))
-    path = write_diagnosis(tmp_path / "diagnosis.json", viscous)
+    path = write_json(tmp_path / "diagnosis.json", viscous.mapping())
     assert read_diagnosis(path).mapping() == viscous.mapping()
 
 

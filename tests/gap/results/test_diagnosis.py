@@ -11,8 +11,8 @@ from hyperleg_design.gap.results.diagnosis import (
     Shrinkage,
     Value,
     read_diagnosis,
-    write_diagnosis,
 )
+from hyperleg_design.writing import write_json
 
 
 def example(**changes):
@@ -35,7 +35,7 @@ def example(**changes):
 
 
 def test_a_diagnosis_survives_its_file(tmp_path):
-    path = write_diagnosis(tmp_path / "diagnosis.json", example())
+    path = write_json(tmp_path / "diagnosis.json", example().mapping())
     assert read_diagnosis(path).mapping() == example().mapping()
 
 
@@ -46,7 +46,8 @@ def test_the_file_keeps_its_schema(tmp_path):
         example(),
         example(verdict="none", causes=(), equivalent=(), separating_experiment=None),
     ):
-        validate(json.loads(write_diagnosis(tmp_path / "diagnosis.json", one).read_text()), schema)
+        path = write_json(tmp_path / "diagnosis.json", one.mapping())
+        validate(json.loads(path.read_text()), schema)
 
 
 @pytest.mark.parametrize(
@@ -70,8 +71,7 @@ def test_what_is_no_diagnosis_is_refused(tmp_path, content, says):
 
 
 def test_a_number_that_is_not_finite_is_never_written(tmp_path):
+    wrong = example(gap=Shrinkage(float("nan"), 0, 0, 0, (0, 0), "Nm"))
     with pytest.raises(OutputError):
-        write_diagnosis(
-            tmp_path / "d.json", example(gap=Shrinkage(float("nan"), 0, 0, 0, (0, 0), "Nm"))
-        )
+        write_json(tmp_path / "d.json", wrong.mapping())
     assert not (tmp_path / "d.json").exists()

@@ -11,7 +11,6 @@ from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.report.gap import page as gap_page
 from hyperleg_design.report.gap.page import write_gap_page
-from hyperleg_design.report.gap.text import diagnosis_text
 
 PENDULUM = """
 <mujoco><worldbody><body name="arm"><joint name="swing" axis="0 1 0"/>
@@ -129,21 +128,6 @@ def test_what_is_left_of_an_unknown_gap_follows_the_verdict(tmp_path: Path, sign
     }
     text = written(tmp_path, diagnosis("unknown", residual_shape=[shape]), signals)
     assert '<p class="lead">Left at swing: friction that depends on where the joint is.</p>' in text
-
-
-def test_what_a_joint_shows_at_rest_is_told_and_no_gap_is_said_to_close(
-    tmp_path: Path, signals
-) -> None:
-    rest = {"location": "swing", "torque": 0.3, "says": "swing stays where it is: it sticks"}
-    told = diagnosis("explained", causes=[CAUSE], at_rest=[rest])
-    told["gap"] = {**told["gap"], "closed": 0.0}
-    text = written(tmp_path, told, signals)
-    assert "At rest: swing stays where it is: it sticks." in text
-    assert "is gone on data" not in text
-    assert (
-        "  at rest, which is in no residual: swing stays where it is: it sticks"
-        in diagnosis_text(told).splitlines()
-    )
 
 
 def test_a_remainder_and_what_references_lack_stand_below_the_verdict(

@@ -2,29 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from collections.abc import Mapping, Set
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import SLOW, Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.excitation import SLOW, Need
 from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.kinds import MotorTorque
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.effects.placing import motor_position, motor_strength, motor_velocity
+from hyperleg_design.gap.effects.placed import MotorHooks
+from hyperleg_design.gap.effects.placing import motor_position, motor_velocity
 from hyperleg_design.gap.effects.waves import fitted_waves, peaks
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.filtering import HIGHEST
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
-from hyperleg_design.simulation.alteration import Alteration, Live, Tick
+from hyperleg_design.simulation.alteration import Tick
 
-SHARE = 0.02
-"""Usual cogging over the torque that a motor is made for (EMBiR: cogging of a few per cent of rated
-torque)."""
 ORDERS = np.arange(1.0, 201.0)
 """Periods a turn that a search tries: of motors that count at the output of their gear, as many
 more as it has."""
@@ -33,6 +29,21 @@ ALWAYS = 48
 them below `HIGHEST`."""
 TRIED = 3
 """Best orders kept as starts of a search."""
+COSINE_SOURCE = (
+    "a few per cent of the rated torque of BLDC motors (EMBiR; MuJoCo's dcmotor `cogging`)"
+)
+ORDER_SOURCE = "least common multiple of slots and poles, or its fractions"
+
+
+class _Cogging(MotorHooks):
+    cosine: np.ndarray
+    sine: np.ndarray
+    order: np.ndarray
+
+    def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
+        angle = self.order * tick.motor_position[:, self.place]
+        torque[:, self.place] -= self.cosine * np.cos(angle) + self.sine * np.sin(angle)
+        return torque
 
 
 class Cogging(MotorTorque):
@@ -46,38 +57,19 @@ class Cogging(MotorTorque):
     identifier: ClassVar[str] = "cogging"
     summary: ClassVar[str] = "a motor's torque varies with its angle, some periods a turn"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "cosine",
-            "Nm",
-            0.0,
-            -20.0,
-            20.0,
-            0.1,
-            "a few per cent of the rated torque of BLDC motors (assumed; MuJoCo's dcmotor "
-            "`cogging`)",
-        ),
-        Parameter("sine", "Nm", 0.0, -20.0, 20.0, 0.1, "as the cosine"),
-        Parameter(
-            "order",
-            "1/turn",
-            6.0,
-            0.5,
-            200.0,
-            10.0,
-            "least common multiple of slots and poles, or its fractions",
-            shape=True,
-        ),
+        Parameter("cosine", "Nm", 0.0, -20.0, 20.0, 0.02, COSINE_SOURCE, of_strength=True),
+        Parameter("sine", "Nm", 0.0, -20.0, 20.0, 0.02, "as the cosine", of_strength=True),
+        Parameter("order", "1/turn", 6.0, 0.5, 200.0, 10.0, ORDER_SOURCE, shape=True),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    hooks: ClassVar[type[MotorHooks]] = _Cogging
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.swinging & (motion.slow > SLOW),
+        "slow motion over a range",
+        "no slow motion over a range",
+    )
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "slow ramp": FRICTION | {"encoder_offset", "joint_spring"}
     }
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        slow = motion.swinging & (motion.slow > SLOW)
-        return at_joints(
-            self.identifier, motion, slow, "slow motion over a range", "no slow motion over a range"
-        )
 
     def _torque(
         self, signals: Signals, motor: int, cosine: np.ndarray, sine: np.ndarray, order: np.ndarray
@@ -86,24 +78,17 @@ class Cogging(MotorTorque):
         return cosine * np.cos(angle) + sine * np.sin(angle)
 
     @override
-    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        values = np.asarray(values, float)
-        return CoggingTorque(location, values[..., 0], values[..., 1], values[..., 2])
-
-    @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the torque that the motor is made for."""
-        motor = subject.motors.index(location)
-        share = SHARE * motor_strength(subject, motor)
-        return np.array(
-            [share, share, self.parameters[2].typical * max(abs(float(subject.gear[motor])), 1.0)]
-        )
+        """As many more periods a turn of the joint as its gear has."""
+        found = super().usual(location, subject)
+        found[2] *= max(abs(float(subject.gear[subject.motors.index(location)])), 1.0)
+        return found
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """Amplitudes up to the torque that the motor is made for."""
         found = super().bounds(location, subject)
-        most = min(found[1, 0], motor_strength(subject, subject.motors.index(location)))
+        most = min(found[1, 0], self.strength(location, subject))
         found[0, :2], found[1, :2] = -most, most
         return found
 
@@ -111,10 +96,7 @@ class Cogging(MotorTorque):
     def steps(self, location: str, subject: Subject) -> np.ndarray:
         """Those of the order turn the phase little over a radian of the joint."""
         found = super().steps(location, subject)
-        found[2] = min(
-            found[2],
-            0.05 / float(np.abs(subject.joint_from_motor[:, subject.motors.index(location)]).max()),
-        )
+        found[2] = min(found[2], 0.05 / subject.motor_over_joint(subject.motors.index(location)))
         return found
 
     @override
@@ -145,15 +127,8 @@ class Cogging(MotorTorque):
         # what gravity, friction and inertia that are off would leave is taken out of residual and
         # waves alike
         turned, speed = signals.position[:, main], signals.velocity[:, main]
-        other = [
-            np.ones_like(turned),
-            turned,
-            np.cos(turned),
-            np.sin(turned),
-            speed,
-            sliding(signals)[:, main],
-            signals.acceleration[:, main],
-        ]
+        gravity = [np.ones_like(turned), turned, np.cos(turned), np.sin(turned)]
+        other = [*gravity, speed, sliding(signals)[:, main], signals.acceleration[:, main]]
         beside = np.linalg.qr(np.stack(other, -1)[known])[0]
         slow = float(np.median(np.abs(motor_velocity(signals, motor)[known])))
         orders = ORDERS[(ORDERS <= ALWAYS) | (ORDERS * slow <= 2 * np.pi * HIGHEST)]
@@ -161,29 +136,3 @@ class Cogging(MotorTorque):
         best = peaks(gains, TRIED)
         low, high = self.bounds(location, subject)
         return np.clip(np.column_stack([amplitudes[best], orders[best]]), low, high)
-
-
-class _Cogging(Live):
-    alteration: CoggingTorque
-
-    def prepare(self) -> None:
-        self.place = self.machine.motor(self.alteration.motor)
-
-    def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
-        one, angle = self.alteration, tick.motor_position[:, self.place]
-        torque[:, self.place] -= one.cosine * np.cos(one.order * angle) + one.sine * np.sin(
-            one.order * angle
-        )
-        return torque
-
-
-@dataclass(frozen=True, eq=False)
-class CoggingTorque(Alteration):
-    """Torque that a rotor resists with, over its angle."""
-
-    live: ClassVar[type[Live] | None] = _Cogging
-    motor: str
-    cosine: Any
-    sine: Any
-    order: Any
-    """`()` or `(n,)` each [Nm, Nm, 1/turn]."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -10,7 +10,7 @@ import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
+from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import (
@@ -21,11 +21,9 @@ from hyperleg_design.gap.effects.placing import (
     is_commanded,
     is_logged,
     limited,
-    moved_joints,
 )
 from hyperleg_design.gap.effects.series import delayed
 from hyperleg_design.gap.effects.usual import lateness
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
@@ -55,9 +53,15 @@ class CommandDelay(Effect):
         Parameter("delay", "s", 0.0, 0.0, 0.05, 0.005, "up to 25 ms (PACE, arXiv 2509.06342)"),
         Parameter("late", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=LATE),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.command > COMMAND,
+        "commands change fast enough",
+        f"commands hold nothing above {COMMAND} Hz",
+        asked=True,
+    )
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "log torque or current": BEYOND_COMMANDS,
-        "chirp past 8 Hz": frozenset({"actuator_bandwidth", "controller_gain", "viscous_friction"}),
+        "chirp past 8 Hz": {"actuator_bandwidth", "controller_gain", "viscous_friction"},
     }
     look_alikes: ClassVar[Mapping[str, str]] = {
         "actuator_bandwidth": "gain and phase at high frequency"
@@ -81,17 +85,6 @@ class CommandDelay(Effect):
         return (ROBOT, *(motors if len(motors) > 1 else ()))
 
     @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        lacking = f"commands hold nothing above {COMMAND} Hz"
-        return at_drives(
-            self.identifier,
-            motion,
-            motion.command > COMMAND,
-            "commands change fast enough",
-            lacking,
-        )
-
-    @override
     def place(self, location: str, subject: Subject) -> str:
         """The one that is meant; the only motor is the robot."""
         return ROBOT if (location,) == driven_motors(subject) else super().place(location, subject)
@@ -100,12 +93,9 @@ class CommandDelay(Effect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         delay, late = np.atleast_2d(np.asarray(values, float)).T
         targets = late >= TARGETS
-        moved = (
-            _moved(signals, np.where(targets, delay, 0.0))
-            if targets.any() and _told(signals, location)
-            else None
-        )
-        changes, control = {}, None
+        by_targets = targets.any() and _told(signals, location)
+        moved = _moved(signals, np.where(targets, delay, 0.0)) if by_targets else None
+        changes, control = {}, {}
         for motor, name in enumerate(signals.subject.motors):
             if location not in (ROBOT, name) or not is_commanded(signals, motor):
                 continue
@@ -115,36 +105,22 @@ class CommandDelay(Effect):
                 share = signals.supplied[:, motor] * np.tensordot(
                     moved, signals.subject.motor_from_joint[motor], 1
                 )
-                if not is_logged(signals, motor):
+                if is_logged(signals, motor):
+                    control[motor] = share
+                else:
                     after = after + share
-                elif "control" in signals.residual:
-                    control = (
-                        np.zeros((*share.shape, len(signals.subject.motors)))
-                        if control is None
-                        else control
-                    )
-                    control[..., motor] = share
             changes[motor] = limited(signals, motor, after) - limited(signals, motor, asked)
-        return before_measurement(signals, changes) | (
-            {} if control is None else {"control": control}
-        )
+        return before_measurement(signals, changes, control)
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         motors = driven_motors(subject) if location == ROBOT else (location,)
-        joints = tuple(
-            dict.fromkeys(
-                joint
-                for motor in motors
-                for joint in moved_joints(subject, subject.motors.index(motor))
-            )
-        )
+        own = [subject.motors.index(motor) for motor in motors]
+        moved = np.flatnonzero(subject.motor_from_joint[own].any(0))
         delay, late = np.moveaxis(np.asarray(values, float), -1, 0)
+        command = np.where(late < TARGETS, delay, 0.0)
         return LateCommand(
-            motors,
-            joints,
-            np.where(late < TARGETS, delay, 0.0),
-            np.where(late < TARGETS, 0.0, delay),
+            motors, tuple(subject.joints[j] for j in moved), command, delay - command
         )
 
     @override
@@ -219,15 +195,10 @@ class _Late(Live):
 
     def prepare(self) -> None:
         one = self.alteration
-        self.of_motors = _Past(
-            one.delay, self.count, self.step, [self.machine.motor(name) for name in one.motors]
-        )
-        self.of_joints = _Past(
-            one.target_delay,
-            self.count,
-            self.step,
-            [self.machine.joint(name) for name in one.joints],
-        )
+        motors = [self.machine.motor(name) for name in one.motors]
+        joints = [self.machine.joint(name) for name in one.joints]
+        self.of_motors = _Past(one.delay, self.count, self.step, motors)
+        self.of_joints = _Past(one.target_delay, self.count, self.step, joints)
         self.commands, self.commands_begun = self.of_motors.values, self.of_motors.begun
         self.targets, self.targets_begun = self.of_joints.values, self.of_joints.begun
 

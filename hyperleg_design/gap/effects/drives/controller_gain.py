@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Set
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import STEERED
-from hyperleg_design.gap.effects.excitation import STILL, Excitation, Motion, at_drives
+from hyperleg_design.gap.effects.excitation import SWINGING, Need
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS, FRICTION, WITH_LOAD, WITHOUT_DRIVE
 from hyperleg_design.gap.effects.kinds import JointEffect
 from hyperleg_design.gap.effects.parameter import Parameter
@@ -22,14 +22,14 @@ from hyperleg_design.gap.effects.placing import (
     is_logged,
     limited,
 )
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.drives.machine import Machine
 
-USUAL = 0.015
-"""Usual error of a gain over it."""
+STIFFNESS_SCALE_SOURCE = (
+    "servos' registers are nominal: 20 % off (assumed; XL330 and STS3215 fits in BAM)"
+)
 
 
 class ControllerGain(JointEffect):
@@ -48,18 +48,11 @@ class ControllerGain(JointEffect):
     nuisance_torque: ClassVar[str] = STEERED
     summary: ClassVar[str] = "a joint controller is stiffer or more damped than declared"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "stiffness_scale",
-            "",
-            1.0,
-            0.1,
-            5.0,
-            0.2,
-            "servos' registers are nominal: 20 % off (assumed; XL330 and STS3215 fits in BAM)",
-        ),
-        Parameter("damping_scale", "", 1.0, 0.0, 5.0, 0.2, "as the stiffness"),
+        Parameter("stiffness_scale", "", 1.0, 0.1, 5.0, 0.2, STIFFNESS_SCALE_SOURCE, spread=0.015),
+        Parameter("damping_scale", "", 1.0, 0.0, 5.0, 0.2, "as the stiffness", spread=0.015),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    needs: ClassVar[Need] = replace(SWINGING, good="targets, gains and motion", asked=True)
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "log torque or current": BEYOND_COMMANDS,
         "several amplitudes": FRICTION - {"viscous_friction"} | {"backlash", "torque_saturation"},
         "torque-off swing": WITHOUT_DRIVE,
@@ -68,21 +61,10 @@ class ControllerGain(JointEffect):
     look_alikes: ClassVar[Mapping[str, str]] = {"torque_saturation": "several amplitudes"}
 
     @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of both gains."""
-        return dict.fromkeys(self.locations(subject), np.array([USUAL, USUAL]))
-
-    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints with known gains."""
         known = np.isfinite(subject.gains).all(1) & (subject.gains != 0).any(1) & ~subject.passive
         return tuple(name for name, here in zip(subject.joints, known, strict=True) if here)
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        return at_drives(
-            self.identifier, motion, motion.swinging, "targets, gains and motion", STILL
-        )
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -95,7 +77,7 @@ class ControllerGain(JointEffect):
         error = signals.target[:, joint] - signals.position[:, joint]
         spring = scale[:, 0] * (stiffness * error)
         damper = scale[:, 1] * (damping * signals.sensed[:, joint])
-        changes, control = {}, None
+        changes, control = {}, {}
         for motor in np.flatnonzero(subject.motor_from_joint[:, joint]).tolist():
             if subject.motors[motor] not in driven_motors(subject) or not is_commanded(
                 signals, motor
@@ -105,19 +87,11 @@ class ControllerGain(JointEffect):
                 signals.supplied[:, motor] * spring - damper
             )
             if is_logged(signals, motor):
-                if "control" in signals.residual:
-                    control = (
-                        np.zeros((*share.shape, len(subject.motors)))
-                        if control is None
-                        else control
-                    )
-                    control[..., motor] = share
+                control[motor] = share
                 continue
             asked = commanded(signals, motor)
             changes[motor] = limited(signals, motor, asked + share) - limited(signals, motor, asked)
-        return before_measurement(signals, changes) | (
-            {} if control is None else {"control": control}
-        )
+        return before_measurement(signals, changes, control)
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:

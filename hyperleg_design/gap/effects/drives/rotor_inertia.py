@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.kinds import MotorTorque
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import joint_inertia
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
@@ -27,6 +26,7 @@ CONTENT = 1.0
 """Content of the motion from which a rotor's inertia shows [Hz]."""
 OF_ROTOR, OF_JOINT = 0.06, 0.01
 """Usual error over the rotor's inertia and over that of its joint."""
+SOURCE = "0.03-0.1 kg m^2 reflected on leg joints; `usual` knows the motor's side"
 
 
 class RotorInertia(MotorTorque):
@@ -41,19 +41,16 @@ class RotorInertia(MotorTorque):
     described: ClassVar[bool] = True
     summary: ClassVar[str] = "a rotor (and its gear) has more or less inertia than the model"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "inertia",
-            "kg m^2",
-            0.0,
-            -5.0,
-            5.0,
-            0.05,
-            "0.03-0.1 kg m^2 reflected on leg joints; `usual` knows the motor's side",
-        ),
+        Parameter("inertia", "kg m^2", 0.0, -5.0, 5.0, 0.05, SOURCE),
     )
     linear: ClassVar[bool] = True
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "chirp past 8 Hz": frozenset({"controller_gain", "torque_constant", "transmission_ratio"}),
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.reversing & (motion.content > CONTENT),
+        "motion accelerates",
+        "hardly any acceleration",
+    )
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
+        "chirp past 8 Hz": {"controller_gain", "torque_constant", "transmission_ratio"},
         "several postures": INERTIAL,
     }
     look_alikes: ClassVar[Mapping[str, str]] = {"link_mass": "several postures"}
@@ -66,20 +63,9 @@ class RotorInertia(MotorTorque):
             motor = subject.motors.index(location)
             column = np.abs(subject.joint_from_motor[:, motor])
             main = int(np.argmax(column))
-            spreads[location] = np.array(
-                [
-                    OF_ROTOR * subject.rotor_inertia[motor]
-                    + OF_JOINT * inertia[main] / max(float(column[main]), 1e-9) ** 2
-                ]
-            )
+            of_joint = OF_JOINT * inertia[main] / max(float(column[main]), 1e-9) ** 2
+            spreads[location] = np.array([OF_ROTOR * subject.rotor_inertia[motor] + of_joint])
         return spreads
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        moved = motion.reversing & (motion.content > CONTENT)
-        return at_joints(
-            self.identifier, motion, moved, "motion accelerates", "hardly any acceleration"
-        )
 
     def _torque(self, signals: Signals, motor: int, inertia: np.ndarray) -> np.ndarray:
         return inertia * (signals.acceleration @ signals.subject.joint_from_motor[:, motor])

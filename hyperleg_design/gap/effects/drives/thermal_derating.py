@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from collections.abc import Mapping, Set
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -13,11 +12,12 @@ from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import SCALING, WITH_LOAD
 from hyperleg_design.gap.effects.kinds import MotorTorque
 from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placed import MotorHooks, Placed
 from hyperleg_design.gap.effects.placing import given, machine, motor_strength
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.alteration import Alteration, Live, Tick
+from hyperleg_design.simulation.alteration import Alteration, Tick
 
 COLD = 25.0
 """Temperature at which a motor has the torque of its data sheet [degC]."""
@@ -30,6 +30,7 @@ RATED_SHARE = 1 / 3
 """Rated over largest torque where nobody gives it (assumed)."""
 WARMING = 10.0
 """Rise of a motor's temperature that changes torque visibly [K]."""
+SOURCE = "flux of NdFeB -0.12 %/K, of ferrites -0.2 %/K; copper 0.39 %/K with voltage drives"
 
 
 class ThermalDerating(MotorTorque):
@@ -49,51 +50,35 @@ class ThermalDerating(MotorTorque):
     """Assumed."""
     summary: ClassVar[str] = "a motor loses torque as it warms up"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "coefficient",
-            "1/K",
-            0.0,
-            0.0,
-            0.012,
-            0.002,
-            "flux of NdFeB -0.12 %/K, of ferrites -0.2 %/K; copper 0.39 %/K with voltage drives",
-        ),
+        Parameter("coefficient", "1/K", 0.0, 0.0, 0.012, 0.002, SOURCE),
     )
     linear: ClassVar[bool] = True
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "known payload": WITH_LOAD,
         "cold and warm": SCALING | {"load_dependent_friction"},
     }
 
     @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        known = {m: log.column(f"motor_temperature/{m}") for m in log.motors}
-        rise = {
-            m: float(np.nanmax(values) - np.nanmin(values))
-            for m, values in known.items()
-            if log.has("motor_temperature", m)
-        }
+        logged = [m for m in log.motors if log.has("motor_temperature", m)]
+        known = {m: log.column(f"motor_temperature/{m}") for m in logged}
+        rise = {m: float(np.nanmax(values) - np.nanmin(values)) for m, values in known.items()}
         if not rise:
             return Excitation(self.identifier, False, (), "no motor temperature")
         warm = tuple(m for m, value in rise.items() if value >= WARMING)
-        why = f"temperature changes by {max(rise.values()):.0f} K"
-        return Excitation(
-            self.identifier,
-            bool(warm) and bool(motion.torque.any()),
-            warm,
-            why if warm else f"{why}; {WARMING:.0f} K are needed",
-        )
+        needed = "" if warm else f"; {WARMING:.0f} K are needed"
+        why = f"temperature changes by {max(rise.values()):.0f} K{needed}"
+        return Excitation(self.identifier, bool(warm) and bool(motion.torque.any()), warm, why)
 
     def _torque(self, signals: Signals, motor: int, coefficient: np.ndarray) -> np.ndarray:
         return coefficient * (rise(signals, motor) * given(signals, motor))
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        return DeratedMotor(
-            location,
-            np.asarray(values, float)[..., 0],
-            rated_torque(subject, subject.motors.index(location)),
-        )
+        """With the continuous torque of the motor."""
+        rated = rated_torque(subject, subject.motors.index(location))
+        constants = {"coefficient": np.asarray(values, float)[..., 0], "rated": rated}
+        return Placed(location, constants, live=_Derated)
 
     @override
     def torque_slope(self, signals: Signals, motor: int, joint: int) -> np.ndarray:
@@ -137,34 +122,23 @@ def rated_torque(subject: Subject, motor: int) -> float:
     return known if np.isfinite(known) else RATED_SHARE * motor_strength(subject, motor)
 
 
-class _Derated(Live):
-    kept: ClassVar[tuple[str, ...]] = ("rise",)
+class _Derated(MotorHooks):
+    """Loses torque with temperature: measured, or modelled from cold."""
 
-    alteration: DeratedMotor
+    kept: ClassVar[tuple[str, ...]] = ("rise",)
+    coefficient: np.ndarray
+    rated: float
 
     def prepare(self) -> None:
-        self.place = self.machine.motor(self.alteration.motor)
+        super().prepare()
         self.rise = np.zeros(self.count)
 
     def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
-        one = self.alteration
-        heat = RATED_RISE * (torque[:, self.place] / one.rated) ** 2
+        heat = RATED_RISE * (torque[:, self.place] / self.rated) ** 2
         rise = self.rise.copy()
         if tick.temperature is not None:
             known = tick.temperature[:, self.place] - COLD
             rise = np.where(np.isfinite(known), known, rise)
         self.rise += -np.expm1(-self.step / TIME_CONSTANT) * (heat - self.rise)
-        torque[:, self.place] *= np.clip(1 - one.coefficient * rise, 0.0, None)
+        torque[:, self.place] *= np.clip(1 - self.coefficient * rise, 0.0, None)
         return torque
-
-
-@dataclass(frozen=True, eq=False)
-class DeratedMotor(Alteration):
-    """A motor that loses torque with temperature: measured, or modelled from cold."""
-
-    live: ClassVar[type[Live] | None] = _Derated
-    motor: str
-    coefficient: Any
-    """`()` or `(n,)` [1/K]."""
-    rated: float
-    """Continuous torque [Nm]."""

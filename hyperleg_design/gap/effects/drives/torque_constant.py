@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from collections.abc import Mapping, Set
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
@@ -14,6 +13,7 @@ from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import FRICTION, WITH_LOAD, WITHOUT_DRIVE
 from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placed import MotorHooks
 from hyperleg_design.gap.effects.placing import (
     at_motor,
     before_measurement,
@@ -22,15 +22,44 @@ from hyperleg_design.gap.effects.placing import (
     is_measured,
 )
 from hyperleg_design.gap.logs.log import Log
-from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
+from hyperleg_design.simulation.alteration import Limits, Tick
 
-CONSTANT, TELLS = 0.03, 0.005
-"""Usual error of a torque constant over it, and of the torque that a drive says that it gives,
-apart from its motor's."""
 READING = 1
 """Parameter by which currents are read wrongly."""
+
+
+class _Scaled(MotorHooks):
+    """Scales torque over what the drive takes itself to give, or over what is read from it."""
+
+    scale: np.ndarray
+    reading: np.ndarray
+
+    def prepare(self) -> None:
+        super().prepare()
+        self.read = 1.0 + self.reading * (self.scale - 1.0)
+        self.misread = bool(np.any(self.read != 1.0))
+
+    def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
+        if self.misread:
+            command[:, self.place] /= self.read
+        return command
+
+    def limits(self, limits: Limits, tick: Tick) -> Limits:
+        if not self.misread:
+            return limits
+        shape = np.broadcast_shapes(
+            np.shape(limits.peak_torque), (self.count, len(self.machine.motors))
+        )
+        stall = np.array(np.broadcast_to(limits.stall_torque, shape))
+        peak = np.array(np.broadcast_to(limits.peak_torque, shape))
+        stall[:, self.place] /= self.read
+        peak[:, self.place] /= self.read
+        return Limits(limits.no_load_speed, stall, peak)
+
+    def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
+        torque[:, self.place] *= self.scale
+        return torque
 
 
 class TorqueConstant(MotorEffect):
@@ -50,7 +79,9 @@ class TorqueConstant(MotorEffect):
         "a motor gives more or less torque than its current and its data sheet say"
     )
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("scale", "", 1.0, 0.3, 2.0, 0.08, "8 % off on a dynamometer (EMBiR)"),
+        Parameter(
+            "scale", "", 1.0, 0.3, 2.0, 0.08, "8 % off on a dynamometer (EMBiR)", spread=0.03
+        ),
         Parameter(
             "reading",
             "",
@@ -61,20 +92,17 @@ class TorqueConstant(MotorEffect):
             "a choice",
             shape=True,
             choices=("another motor", "its current is read wrongly"),
+            spread=0.005,
         ),
     )
     linear: ClassVar[bool] = True
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    hooks: ClassVar[type[MotorHooks]] = _Scaled
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "several amplitudes": FRICTION - {"viscous_friction"},
         "torque-off swing": WITHOUT_DRIVE,
         "known payload": WITH_LOAD,
     }
     look_alikes: ClassVar[Mapping[str, str]] = {"payload": "a known payload, or several loads"}
-
-    @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Of the constant, and of what a drive says that it gives."""
-        return dict.fromkeys(self.locations(subject), np.array([CONSTANT, TELLS]))
 
     @override
     def nuisance_trace(
@@ -115,11 +143,6 @@ class TorqueConstant(MotorEffect):
         return found
 
     @override
-    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        values = np.asarray(values, float)
-        return ScaledTorque(location, values[..., 0], values[..., 1])
-
-    @override
     def variants(self, signals: Signals, location: str) -> np.ndarray:
         """Another motor; and a wrong reading, where the log tells both what was asked for and what
         was given.
@@ -130,47 +153,3 @@ class TorqueConstant(MotorEffect):
 
 def _told_twice(signals: Signals, motor: int) -> bool:
     return is_measured(signals, motor) and is_commanded(signals, motor)
-
-
-class _Scaled(Live):
-    alteration: ScaledTorque
-
-    def prepare(self) -> None:
-        one = self.alteration
-        self.place = self.machine.motor(one.motor)
-        self.read = 1.0 + np.asarray(one.reading) * (np.asarray(one.scale) - 1.0)
-        self.misread = bool(np.any(self.read != 1.0))
-
-    def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
-        if self.misread:
-            command[:, self.place] /= self.read
-        return command
-
-    def limits(self, limits: Limits, tick: Tick) -> Limits:
-        if not self.misread:
-            return limits
-        shape = np.broadcast_shapes(
-            np.shape(limits.peak_torque), (self.count, len(self.machine.motors))
-        )
-        stall = np.array(np.broadcast_to(limits.stall_torque, shape))
-        peak = np.array(np.broadcast_to(limits.peak_torque, shape))
-        stall[:, self.place] /= self.read
-        peak[:, self.place] /= self.read
-        return Limits(limits.no_load_speed, stall, peak)
-
-    def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
-        torque[:, self.place] *= self.alteration.scale
-        return torque
-
-
-@dataclass(frozen=True, eq=False)
-class ScaledTorque(Alteration):
-    """Torque of a motor over the one that its drive takes itself to give, or over the one that is
-    read from it.
-    """
-
-    live: ClassVar[type[Live] | None] = _Scaled
-    motor: str
-    scale: Any
-    reading: Any = 0.0
-    """`()` or `(n,)` each [-]."""

@@ -3,35 +3,51 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from collections.abc import Mapping, Set
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_drives
+from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS
 from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placed import MotorHooks
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
     commanded,
     is_commanded,
     limited,
-    motor_strength,
 )
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
+from hyperleg_design.simulation.alteration import Limits, Tick
 
 _QUANTILES = (0.97, 0.9, 0.8, 0.6)
 _NEEDED = 0.95
 LEAST = 0.03
 """Limit over the torque that the motor is made for (assumed: current limits of 5 % are set by
 nobody)."""
+SOURCE = "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor"
+
+
+def _limit(inverse: np.ndarray) -> np.ndarray:
+    """Limit [Nm], infinite where there is none."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(1 / np.maximum(inverse, 0.0))
+
+
+class _Lower(MotorHooks):
+    inverse_limit: np.ndarray
+
+    def limits(self, limits: Limits, tick: Tick) -> Limits:
+        peak = np.array(
+            np.broadcast_to(limits.peak_torque, (self.count, len(self.machine.motors))), float
+        )
+        peak[:, self.place] = np.minimum(peak[:, self.place], _limit(self.inverse_limit))
+        return dataclasses.replace(limits, peak_torque=peak)
 
 
 class TorqueSaturation(MotorEffect):
@@ -45,27 +61,16 @@ class TorqueSaturation(MotorEffect):
     identifier: ClassVar[str] = "torque_saturation"
     summary: ClassVar[str] = "a drive limits its torque (or current) to less than the model's limit"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "inverse_limit",
-            "1/Nm",
-            0.0,
-            0.0,
-            1e3,
-            0.1,
-            "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor",
-        ),
+        Parameter("inverse_limit", "1/Nm", 0.0, 0.0, 1e3, 0.1, SOURCE),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {"log torque or current": BEYOND_COMMANDS}
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        return at_drives(
-            self.identifier,
-            motion,
-            motion.swinging,
-            "commands of different size",
-            "commands hardly change",
-        )
+    hooks: ClassVar[type[MotorHooks]] = _Lower
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.swinging,
+        "commands of different size",
+        "commands hardly change",
+        asked=True,
+    )
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {"log torque or current": BEYOND_COMMANDS}
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -74,37 +79,24 @@ class TorqueSaturation(MotorEffect):
             return {}
         asked = commanded(signals, motor)
         limit = _limit(np.atleast_2d(np.asarray(values, float))[:, :1])
-        return before_measurement(
-            signals,
-            {motor: limited(signals, motor, asked, peak=limit) - limited(signals, motor, asked)},
-        )
-
-    @override
-    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        return LowerLimit(location, _limit(np.asarray(values, float)[..., 0]))
+        lower = limited(signals, motor, asked, peak=limit)
+        return before_measurement(signals, {motor: lower - limited(signals, motor, asked)})
 
     @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
         """A limit of 60 % of the torque that the motor is made for."""
-        return np.array([1 / (0.6 * motor_strength(subject, subject.motors.index(location)))])
+        return np.array([1 / (0.6 * self.strength(location, subject))])
 
     @override
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
         """A limit that slow motion reaches, the lower the larger."""
-        return np.array([size / (0.1 * motor_strength(subject, subject.motors.index(location)))])
+        return np.array([size / (0.1 * self.strength(location, subject))])
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """A drive that gives next to nothing is no limited one."""
         low, high = super().bounds(location, subject)
-        return np.array(
-            [
-                low,
-                np.minimum(
-                    high, 1 / (LEAST * motor_strength(subject, subject.motors.index(location)))
-                ),
-            ]
-        )
+        return np.array([low, np.minimum(high, 1 / (LEAST * self.strength(location, subject)))])
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
@@ -117,11 +109,8 @@ class TorqueSaturation(MotorEffect):
         asked = np.abs(limited(signals, motor, commanded(signals, motor)))
         needed = np.abs(applied(signals.subject.motor_from_joint[motor : motor + 1], signals.rigid))
         limits = np.append(np.nanquantile(needed, _NEEDED), np.nanquantile(asked, _QUANTILES))
-        return np.asarray(
-            np.minimum(1 / np.maximum(limits, 1e-9), self.bounds(location, signals.subject)[1])[
-                :, None
-            ]
-        )
+        most = self.bounds(location, signals.subject)[1]
+        return np.minimum(1 / np.maximum(limits, 1e-9), most)[:, None]
 
     @override
     def derived(
@@ -129,34 +118,3 @@ class TorqueSaturation(MotorEffect):
     ) -> dict[str, tuple[float, str]]:
         """Compute the torque limit of the motor."""
         return {"limit": (float(_limit(values[0])), "Nm")}
-
-
-def _limit(inverse: np.ndarray) -> np.ndarray:
-    """Limit [Nm], infinite where there is none."""
-    with np.errstate(divide="ignore"):
-        return np.asarray(1 / np.maximum(inverse, 0.0))
-
-
-class _Lower(Live):
-    alteration: LowerLimit
-
-    def prepare(self) -> None:
-        self.place = self.machine.motor(self.alteration.motor)
-
-    def limits(self, limits: Limits, tick: Tick) -> Limits:
-        peak = np.array(
-            np.broadcast_to(limits.peak_torque, (self.count, len(self.machine.motors))), float
-        )
-        limit = np.asarray(self.alteration.limit, float)
-        peak[:, self.place] = np.minimum(peak[:, self.place], limit)
-        return dataclasses.replace(limits, peak_torque=peak)
-
-
-@dataclass(frozen=True, eq=False)
-class LowerLimit(Alteration):
-    """Largest torque of a motor, where it is below the machine's."""
-
-    live: ClassVar[type[Live] | None] = _Lower
-    motor: str
-    limit: Any
-    """`()` or `(n,)` [Nm]."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -23,6 +23,7 @@ from hyperleg_design.gap.effects.placing import (
     limited,
     machine,
     motor_strength,
+    motor_strengths,
 )
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
@@ -37,8 +38,13 @@ NEAREST = 1e-12
 """`limits` from which a line is drawn [-]; below, it is out of reach."""
 REFERENCE_SPEED = 0.5
 """Reference power: the torque that the joints are made for at this speed [rad/s]; assumed."""
+USUAL_LINES = ((1.0, 10.0), (1.0, 20.0), (1.0, 40.0), (0.5, 20.0), (2.0, 20.0), (4.0, 20.0))
+"""`limits` and `speed` from which lines that nobody knows are searched [-, rad/s]."""
 SAGGING = 0.03
 """Spread of the voltage over its mean that changes torque visibly."""
+LIMITS_SOURCE = "1: as a DC motor's; 5.8-9.2 V at 7.4 V nominal (XL330 log)"
+TORQUE_SOURCE = "1: as of servos driven by duty cycle, without current control"
+SPEED_SOURCE = "no-load speeds of servos 6-10 rad/s, of legs' joints 10-25 rad/s (data sheets)"
 
 
 class VoltageSag(Effect):
@@ -63,40 +69,13 @@ class VoltageSag(Effect):
     """Assumed."""
     summary: ClassVar[str] = "the battery's voltage drops, and with it torque limits or torques"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "limits",
-            "",
-            0.0,
-            0.0,
-            20.0,
-            1.0,
-            "1: as a DC motor's; 5.8-9.2 V at 7.4 V nominal (XL330 log)",
-        ),
-        Parameter(
-            "torque",
-            "",
-            0.0,
-            -0.5,
-            4.0,
-            1.0,
-            "1: as of servos driven by duty cycle, without current control",
-        ),
-        Parameter(
-            "speed",
-            "rad/s",
-            10.0,
-            0.5,
-            60.0,
-            5.0,
-            "no-load speeds of servos 6-10 rad/s, of legs' joints 10-25 rad/s (data sheets)",
-            shape=True,
-        ),
+        Parameter("limits", "", 0.0, 0.0, 20.0, 1.0, LIMITS_SOURCE),
+        Parameter("torque", "", 0.0, -0.5, 4.0, 1.0, TORQUE_SOURCE),
+        Parameter("speed", "rad/s", 10.0, 0.5, 60.0, 5.0, SPEED_SOURCE, shape=True),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "log torque or current": BEYOND_COMMANDS,
-        "several amplitudes": frozenset(
-            {"controller_gain", "torque_constant", "torque_saturation"}
-        ),
+        "several amplitudes": {"controller_gain", "torque_constant", "torque_saturation"},
         "torque-off swing": WITHOUT_DRIVE,
         "stiff supply": LATE | SCALING | {"torque_saturation"},
     }
@@ -118,13 +97,9 @@ class VoltageSag(Effect):
         low, high = np.nanpercentile(values, [5, 95])
         spread = float((high - low) / max(abs(np.nanmean(values)), 1e-9))
         enough = spread >= SAGGING and bool(motion.torque.any())
-        why = f"voltage varies by {100 * spread:.0f} %"
-        return Excitation(
-            self.identifier,
-            enough,
-            (),
-            why if enough else f"{why}; {100 * SAGGING:.0f} % are needed",
-        )
+        needed = "" if enough else f"; {100 * SAGGING:.0f} % are needed"
+        why = f"voltage varies by {100 * spread:.0f} %{needed}"
+        return Excitation(self.identifier, enough, (), why)
 
     @override
     def place(self, location: str, subject: Subject) -> str:
@@ -157,19 +132,10 @@ class VoltageSag(Effect):
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        values = np.asarray(values, float)
-        strength = np.array(
-            [motor_strength(subject, motor) for motor in range(len(subject.motors))]
-        )
+        limits, torque, speed = np.moveaxis(np.asarray(values, float), -1, 0)
         ratios = np.array([subject.motor_over_joint(motor) for motor in range(len(subject.motors))])
-        return WeakBattery(
-            values[..., 0],
-            values[..., 1],
-            values[..., 2],
-            strength,
-            ratios,
-            reference_power(subject),
-        )
+        made = motor_strengths(subject), ratios, reference_power(subject)
+        return WeakBattery(limits, torque, speed, *made)
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
@@ -178,16 +144,8 @@ class VoltageSag(Effect):
         """
         if np.isfinite(signals.subject.stall_torque).all():
             return np.array([[1.0, 0.0, 10.0], [3.0, 0.0, 10.0], [0.0, 1.0, 10.0]])
-        usual = [
-            [1.0, 0.0, 10.0],
-            [1.0, 0.0, 20.0],
-            [1.0, 0.0, 40.0],
-            [0.5, 0.0, 20.0],
-            [2.0, 0.0, 20.0],
-            [4.0, 0.0, 20.0],
-            [0.0, 1.0, 10.0],
-        ]
-        return np.array([*_lines(signals), *usual])
+        lines = [[limits, 0.0, speed] for limits, speed in USUAL_LINES]
+        return np.array([*_lines(signals), *lines, [0.0, 1.0, 10.0]])
 
 
 def _lines(signals: Signals) -> list[list[float]]:
@@ -203,21 +161,12 @@ def _lines(signals: Signals) -> list[list[float]]:
             continue
         way = np.sign(torque)
         short = (limited(signals, motor, commanded(signals, motor)) - torque) * way
-        far = np.flatnonzero(
-            short
-            > max(
-                FAR * float(np.nanmedian(np.abs(short))),
-                FALLS_SHORT * motor_strength(subject, motor),
-            )
-        )
+        strength, usual = motor_strength(subject, motor), float(np.nanmedian(np.abs(short)))
+        far = np.flatnonzero(short > max(FAR * usual, FALLS_SHORT * strength))
         if len(far) < FEWEST:
             continue
-        lines = np.nan_to_num(
-            np.stack([1 - missing(signals), -signals.motor_speed[:, motor] * way], -1)[far]
-        )
-        (level, slope), *_ = np.linalg.lstsq(
-            lines, np.abs(torque[far]) / motor_strength(subject, motor)
-        )
+        lines = np.stack([1 - missing(signals), -signals.motor_speed[:, motor] * way], -1)[far]
+        (level, slope), *_ = np.linalg.lstsq(np.nan_to_num(lines), np.abs(torque[far]) / strength)
         if level > 0 and slope > 0:
             found.append([1 / level, 0.0, level / (slope * subject.motor_over_joint(motor))])
     return found
@@ -235,11 +184,9 @@ def missing(signals: Signals) -> np.ndarray:
     subject = signals.subject
     if signals.voltage is not None:
         nominal = machine(subject).voltage
-        return np.asarray(
-            1
-            - signals.voltage
-            / (nominal if np.isfinite(nominal) else float(np.nanpercentile(signals.voltage, FULL)))
-        )
+        if not np.isfinite(nominal):
+            nominal = float(np.nanpercentile(signals.voltage, FULL))
+        return np.asarray(1 - signals.voltage / nominal)
     torque, speed = np.nan_to_num(signals.believed), signals.motor_speed
     return modelled(torque, speed, machine(subject), reference_power(subject))
 

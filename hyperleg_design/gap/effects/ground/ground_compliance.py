@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -20,7 +20,12 @@ from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
 
 USUAL = 0.5
-"""Usual error of how the ground gives and damps, over it."""
+"""Usual error of how the ground gives and damps, over it; no simulator has it from a
+measurement."""
+SCALE_SOURCE = "soles and mats: 1-5 mm under body weight against a fraction of that (estimate)"
+DAMPING_SCALE_SOURCE = (
+    "of the damping ratio: rubber 0.05-0.3 against a critically damped model (estimate)"
+)
 
 
 class GroundCompliance(FootEffect):
@@ -34,34 +39,12 @@ class GroundCompliance(FootEffect):
     nuisance_rank: ClassVar[int] = 1
     summary: ClassVar[str] = "the ground or the sole is softer or harder under a foot"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "scale",
-            "",
-            1.0,
-            0.1,
-            20.0,
-            1.0,
-            "soles and mats: 1-5 mm under body weight against a fraction of that (engineering "
-            "estimate)",
-        ),
-        Parameter(
-            "damping_scale",
-            "",
-            1.0,
-            0.1,
-            5.0,
-            0.5,
-            "of the damping ratio: rubber 0.05-0.3 against a critically damped model (estimate)",
-        ),
+        Parameter("scale", "", 1.0, 0.1, 20.0, 1.0, SCALE_SOURCE, spread=USUAL),
+        Parameter("damping_scale", "", 1.0, 0.1, 5.0, 0.5, DAMPING_SCALE_SOURCE, spread=USUAL),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "push on the ground": FRICTION | INERTIAL | {"ground_friction"}
     }
-
-    @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Of how the ground gives and damps, which no simulator has from a measurement."""
-        return dict.fromkeys(self.locations(subject), np.array([USUAL, USUAL]))
 
     @override
     def excited(self, log: Log, motion: Motion) -> Excitation:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -28,6 +28,7 @@ ICE = 2.7
 friction 0.2 instead of 1 (assumed)."""
 USUAL = 0.1
 """Usual error of the ground's friction over it."""
+SOURCE = "rubber on dry to wet floors 0.9-0.4 (engineering tables), 30 % of a nominal 0.8"
 
 
 class GroundFriction(FootEffect):
@@ -38,24 +39,11 @@ class GroundFriction(FootEffect):
     identifier: ClassVar[str] = "ground_friction"
     summary: ClassVar[str] = "the ground is more or less slippery under a foot"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "scale",
-            "",
-            1.0,
-            0.05,
-            5.0,
-            0.3,
-            "rubber on dry to wet floors 0.9-0.4 (engineering tables), 30 % of a nominal 0.8",
-        ),
+        Parameter("scale", "", 1.0, 0.05, 5.0, 0.3, SOURCE, spread=USUAL),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "push on the ground": FRICTION | INERTIAL | {"ground_compliance"}
     }
-
-    @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the ground's friction."""
-        return dict.fromkeys(self.locations(subject), np.array([USUAL]))
 
     @override
     def excited(self, log: Log, motion: Motion) -> Excitation:

@@ -2,31 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import FEW, REVERSES, Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.excitation import REVERSING, Need
 from hyperleg_design.gap.effects.families import FRICTION
-from hyperleg_design.gap.effects.joints.friction import DescribedFriction, JointFriction
+from hyperleg_design.gap.effects.joints.friction import JointFriction, ModelledFriction
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.effects.usual import least_friction
-from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.effects.usual import COULOMB_LEAST
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import WIDTH, sliding
 from hyperleg_design.simulation.alteration import Alteration
 
-SHARE = 0.04
-"""Usual Coulomb friction over the torque that a joint is made for: 4-5 Nm on harmonic drives of 100
-Nm (BAM)."""
-OF_FRICTION = 0.08
-"""Usual error of the model's friction, over it."""
+SOURCE = "4-5.6 Nm on harmonic drives of 100 Nm (BAM, arXiv 2410.08650); 0.7 on an RMD-X8"
 
 
-class CoulombFriction(DescribedFriction):
+class CoulombFriction(ModelledFriction):
     """A joint resists sliding with one torque at any speed, beyond (or, negative, short of) the
     friction of the model.
 
@@ -37,30 +32,16 @@ class CoulombFriction(DescribedFriction):
     summary: ClassVar[str] = "a joint resists motion with a torque of constant size"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
-            "torque",
-            "Nm",
-            0.0,
-            -50.0,
-            100.0,
-            4.0,
-            "4-5.6 Nm on harmonic drives (BAM, arXiv 2410.08650); 0.7 Nm sliding on an RMD-X8",
+            "torque", "Nm", 0.0, -50.0, 100.0, 0.04, SOURCE, spread=COULOMB_LEAST, of_strength=True
         ),
     )
-    share: ClassVar[float] = SHARE
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    linear: ClassVar[bool] = True
+    described: ClassVar[bool] = True
+    needs: ClassVar[Need] = REVERSING
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "slow ramp": FRICTION | {"cogging", "joint_spring"}
     }
     look_alikes: ClassVar[Mapping[str, str]] = {"backlash": "preload"}
-
-    @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the model's friction, and of what the joint is made for."""
-        spreads = OF_FRICTION * subject.coulomb + least_friction(subject)
-        return {joint: np.array([s]) for joint, s in zip(subject.joints, spreads, strict=True)}
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        return at_joints(self.identifier, motion, motion.reversing, REVERSES, FEW)
 
     def _torque(self, signals: Signals, joint: int, torque: np.ndarray) -> np.ndarray:
         return torque * sliding(signals)[:, joint]
@@ -75,7 +56,3 @@ class CoulombFriction(DescribedFriction):
             coulomb=torque,
             width=float(subject.friction_speed[joint]) if np.any(torque < 0) else WIDTH,
         )
-
-    @staticmethod
-    def _described(subject: Subject) -> np.ndarray:
-        return subject.coulomb

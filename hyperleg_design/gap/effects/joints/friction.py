@@ -2,44 +2,50 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.families import FRICTION as FRICTION
 from hyperleg_design.gap.effects.kinds import JointTorque
-from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
 
 
-class DescribedFriction(JointTorque):
-    """Friction of one size that a model describes, so that there may also be less of it."""
+class ModelledFriction(JointTorque):
+    """Friction that is as well known as the model's: its first parameter is its size."""
 
-    described: ClassVar[bool] = True
-    linear: ClassVar[bool] = True
-    share: ClassVar[float]
-    """Usual size over the torque that the joint is made for [1/s or -]."""
+    model_spread: ClassVar[float] = 0.08
+    """Usual error of the model's friction, over it."""
 
     @staticmethod
-    @abstractmethod
-    def _described(subject: Subject) -> np.ndarray:
-        """What the model has of it, `(joints,)`."""
+    def modelled(subject: Subject) -> np.ndarray:
+        """Friction of its kind in the model, `(joints,)`.
+
+        Args:
+            subject: the robot.
+        """
+        return subject.coulomb
 
     @override
-    def usual(self, location: str, subject: Subject) -> np.ndarray:
-        return np.array([self.share * joint_strength(subject)[subject.joints.index(location)]])
+    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """A share of the model's friction, and of what the joint is made for."""
+        size = np.eye(len(self.parameters))[0]
+        made = super().nuisance_spreads(subject, step).items()
+        own = self.model_spread * self.modelled(subject)
+        return {joint: share * size + one for (joint, one), share in zip(made, own, strict=True)}
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Bound it by no friction at all, and by the torque that the joint is made for."""
-        joint = subject.joints.index(location)
-        largest = min(self.parameters[0].high, joint_strength(subject)[joint])
-        return np.array([[-self._described(subject)[joint]], [largest]])
+        """No larger than the torque that the joint is made for, nor less than none."""
+        found = super().bounds(location, subject)
+        found[1, 0] = min(found[1, 0], self.strength(location, subject))
+        if self.described:
+            found[0, 0] = -self.modelled(subject)[subject.joints.index(location)]
+        return found
 
 
 class _Friction(Live):

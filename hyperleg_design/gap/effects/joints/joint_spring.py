@@ -2,28 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from collections.abc import Mapping, Set
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.excitation import SWINGING, Need
 from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.kinds import JointTorque
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.effects.placing import joint_strength
-from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.effects.placed import JointHooks, Placed
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.alteration import Alteration, Live, Tick
+from hyperleg_design.simulation.alteration import Alteration, Tick
 
-SHARE = 0.05
-"""Usual stiffness a radian, and preload, over the torque that a joint is made for (assumed: cables
-and seals)."""
-STIFFNESS, TORQUE = 0.002, 0.002
-"""Usual error of the torque a radian, and at rest, over the torque that the joint is made for."""
+SOURCE = "cable bundles and seals, 5 % of the joint's torque a radian, and at rest (assumed)"
+USUAL = 0.05, SOURCE, 0.002
 
 
 class JointSpring(JointTorque):
@@ -37,43 +32,15 @@ class JointSpring(JointTorque):
     nuisance_rank: ClassVar[int] = 5
     summary: ClassVar[str] = "a cable or a spring pulls a joint towards some angle"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "stiffness",
-            "Nm/rad",
-            0.0,
-            -100.0,
-            500.0,
-            2.0,
-            "cable bundles and seals, 5 % of the joint's torque a radian (assumed)",
-        ),
-        Parameter(
-            "preload",
-            "Nm",
-            0.0,
-            -100.0,
-            100.0,
-            2.0,
-            "as the stiffness, at the posture of rest (assumed)",
-        ),
+        Parameter("stiffness", "Nm/rad", 0.0, -100.0, 500.0, *USUAL, of_strength=True),
+        Parameter("preload", "Nm", 0.0, -100.0, 100.0, *USUAL, of_strength=True),
     )
     linear: ClassVar[bool] = True
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "several amplitudes": frozenset({"backlash", "coulomb_friction"}),
+    needs: ClassVar[Need] = SWINGING
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
+        "several amplitudes": {"backlash", "coulomb_friction"},
         "several postures": INERTIAL,
     }
-
-    @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Shares of what the joint is made for."""
-        shares = np.array([STIFFNESS, TORQUE])
-        return {
-            joint: shares * s
-            for joint, s in zip(subject.joints, joint_strength(subject), strict=True)
-        }
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     def _torque(
         self, signals: Signals, joint: int, stiffness: np.ndarray, preload: np.ndarray
@@ -83,32 +50,24 @@ class JointSpring(JointTorque):
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        values = np.asarray(values, float)
-        return Spring(
-            location,
-            values[..., 0],
-            values[..., 1],
-            float(subject.default[subject.joints.index(location)]),
-        )
-
-    @override
-    def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the torque that the joint is made for."""
-        return np.full(2, SHARE * joint_strength(subject)[subject.joints.index(location)])
+        """Away from the posture of rest."""
+        stiffness, preload = np.moveaxis(np.asarray(values, float), -1, 0)
+        rest = float(subject.default[subject.joints.index(location)])
+        constants = {"stiffness": stiffness, "preload": preload, "rest": rest}
+        return Placed(location, constants, live=_Pull)
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """Less stiff than the model's springs by no more than these; preload up to the torque that
         the joint is made for.
         """
-        joint = subject.joints.index(location)
-        strength = joint_strength(subject)[joint]
-        found = super().bounds(location, subject)
+        own, strength = (
+            subject.spring[subject.joints.index(location)],
+            self.strength(location, subject),
+        )
+        low, high = super().bounds(location, subject)
         return np.array(
-            [
-                np.maximum(found[0], [-subject.spring[joint], -strength]),
-                np.minimum(found[1], [20 * strength, strength]),
-            ]
+            [np.maximum(low, [-own, -strength]), np.minimum(high, [20 * strength, strength])]
         )
 
     @override
@@ -127,28 +86,12 @@ class JointSpring(JointTorque):
         return np.array([[usual[0], 0.0], [0.0, usual[1]], [0.0, -usual[1]]])
 
 
-class _Pull(Live):
-    alteration: Spring
-
-    def prepare(self) -> None:
-        self.place = self.machine.joint(self.alteration.joint)
+class _Pull(JointHooks):
+    stiffness: np.ndarray
+    preload: np.ndarray
+    rest: float
 
     def joint_torque(self, tick: Tick) -> np.ndarray:
-        one, out = self.alteration, np.zeros_like(tick.position)
-        out[:, self.place] = -(
-            one.stiffness * (tick.position[:, self.place] - one.rest) + one.preload
-        )
-        return out
-
-
-@dataclass(frozen=True, eq=False)
-class Spring(Alteration):
-    """Pulls a joint by -(stiffness (q - rest) + preload)."""
-
-    live: ClassVar[type[Live] | None] = _Pull
-    joint: str
-    stiffness: Any
-    preload: Any
-    """`()` or `(n,)` each [Nm/rad, Nm]."""
-    rest: float
-    """[rad]"""
+        torque, angle = np.zeros_like(tick.position), tick.position[:, self.place] - self.rest
+        torque[:, self.place] = -(self.stiffness * angle + self.preload)
+        return torque

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
+from itertools import compress
 from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.joints.friction import JointFriction
 from hyperleg_design.gap.effects.kinds import JointTorque
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.simulation.alteration import Alteration
 
-USUAL = 0.006
-"""Usual share that a model leaves out."""
+SOURCE = "20-31 % of the motor's torque on small servos, 4-5 % on good gears (BAM)"
 
 
 class LoadDependentFriction(JointTorque):
@@ -36,41 +35,23 @@ class LoadDependentFriction(JointTorque):
     nuisance_rank: ClassVar[int] = 3
     summary: ClassVar[str] = "a joint resists motion with a share of the torque that it transmits"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "coefficient",
-            "",
-            0.0,
-            0.0,
-            0.8,
-            0.1,
-            "20-31 % of the motor's torque on small servos, 4-5 % on good gears (BAM)",
-        ),
+        Parameter("coefficient", "", 0.0, 0.0, 0.8, 0.1, SOURCE, spread=0.006),
     )
     linear: ClassVar[bool] = True
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.reversing & motion.swinging,
+        "reverses under different loads",
+        "no joint reverses under different loads",
+    )
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "preload": FRICTION,
         "known payload": FRICTION,
     }
 
     @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the torque, at every joint."""
-        return dict.fromkeys(self.locations(subject), np.array([USUAL]))
-
-    @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Joints that some motor moves."""
-        return tuple(
-            name
-            for name, row in zip(subject.joints, subject.joint_from_motor, strict=True)
-            if row.any()
-        )
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        loaded = motion.reversing & motion.swinging
-        lacking = "no joint reverses under different loads"
-        return at_joints(self.identifier, motion, loaded, "reverses under different loads", lacking)
+        return tuple(compress(subject.joints, np.any(subject.joint_from_motor, 1).tolist()))
 
     def _torque(self, signals: Signals, joint: int, coefficient: np.ndarray) -> np.ndarray:
         subject = signals.subject

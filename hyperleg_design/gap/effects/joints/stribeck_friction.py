@@ -2,31 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import SLOW, Excitation, Motion, at_joints
-from hyperleg_design.gap.effects.joints.friction import JointFriction
-from hyperleg_design.gap.effects.kinds import JointTorque
+from hyperleg_design.gap.effects.excitation import SLOW, Need
+from hyperleg_design.gap.effects.joints.friction import JointFriction, ModelledFriction
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.effects.usual import COULOMB_LEAST
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.simulation.alteration import Alteration
 
-SHARE = 0.04
-"""Usual excess over the torque that a joint is made for: RMD-X8, 2 Nm of 40 Nm."""
-OF_FRICTION = 0.08
-"""Usual error of the breakaway torque over the model's Coulomb friction."""
+SPREAD = 0.3 * COULOMB_LEAST
+TORQUE_SOURCE = "breakaway 2.4-3.3 Nm against 0.7 Nm sliding on an RMD-X8 of 40 Nm"
+SPEED_SOURCE = "0.01-0.3 rad/s (Armstrong-Helouvry et al. 1994; BAM fits)"
 
 
-class StribeckFriction(JointTorque):
+class StribeckFriction(ModelledFriction):
     """Breakaway friction in excess of sliding friction, which is gone at speeds above the Stribeck
     speed.
 
@@ -46,38 +42,21 @@ class StribeckFriction(JointTorque):
             0.0,
             0.0,
             50.0,
-            2.0,
-            "breakaway 2.4-3.3 Nm against 0.7 Nm sliding on an RMD-X8",
+            0.04,
+            TORQUE_SOURCE,
+            0.3 * COULOMB_LEAST,
+            of_strength=True,
         ),
-        Parameter(
-            "speed",
-            "rad/s",
-            0.1,
-            0.01,
-            2.0,
-            0.1,
-            "0.01-0.3 rad/s (Armstrong-Helouvry et al. 1994; BAM fits)",
-            shape=True,
-        ),
+        Parameter("speed", "rad/s", 0.1, 0.01, 2.0, 0.1, SPEED_SOURCE, shape=True),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "slow ramp": frozenset(
-            {"backlash", "cogging", "load_dependent_friction", "viscous_friction"}
-        )
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.reversing & (motion.slow > SLOW),
+        "slow and fast motion",
+        "no slow motion: breakaway is passed in a few ticks",
+    )
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
+        "slow ramp": {"backlash", "cogging", "load_dependent_friction", "viscous_friction"}
     }
-
-    @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """A share of the model's friction, and of what the joint is made for."""
-        spreads = OF_FRICTION * subject.coulomb + 0.3 * COULOMB_LEAST * joint_strength(subject)
-        rest = np.zeros(len(self.parameters) - 1)
-        return {joint: np.append(s, rest) for joint, s in zip(subject.joints, spreads, strict=True)}
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        slow = motion.reversing & (motion.slow > SLOW)
-        lacking = "no slow motion: breakaway is passed in a few ticks"
-        return at_joints(self.identifier, motion, slow, "slow and fast motion", lacking)
 
     def _torque(
         self, signals: Signals, joint: int, torque: np.ndarray, speed: np.ndarray
@@ -91,23 +70,6 @@ class StribeckFriction(JointTorque):
         return JointFriction(
             location, breakaway=values[..., 0], speed=np.maximum(values[..., 1], 1e-6)
         )
-
-    @override
-    def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the torque that the joint is made for."""
-        return np.array(
-            [
-                SHARE * joint_strength(subject)[subject.joints.index(location)],
-                self.parameters[1].typical,
-            ]
-        )
-
-    @override
-    def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Excess no larger than the torque that the joint is made for."""
-        found = super().bounds(location, subject)
-        found[1, 0] = min(found[1, 0], joint_strength(subject)[subject.joints.index(location)])
-        return found
 
     @override
     def steps(self, location: str, subject: Subject) -> np.ndarray:

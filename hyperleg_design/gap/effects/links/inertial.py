@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from itertools import compress
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -13,8 +14,7 @@ from typing_extensions import override
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
-from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.effects.excitation import SWINGING, Need
 from hyperleg_design.gap.model.body_inertia import add_inertia
 from hyperleg_design.gap.model.mechanism import BASE
 from hyperleg_design.gap.model.subject import Subject
@@ -40,6 +40,7 @@ class InertialEffect(Effect):
     """
 
     kind: ClassVar[str] = "link"
+    needs: ClassVar[Need] = SWINGING
 
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -47,10 +48,6 @@ class InertialEffect(Effect):
         tree = subject.tree
         carriers = tree.link_joint.tolist()
         return tuple(name for i, name in enumerate(tree.links) if carriers[i] not in carriers[:i])
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     @override
     def place(self, location: str, subject: Subject) -> str:
@@ -108,11 +105,7 @@ class OwnInertiaEffect(InertialEffect):
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
         """Moving links that have a mass."""
-        return tuple(
-            name
-            for name, own in zip(subject.tree.links, subject.tree.link_inertial, strict=True)
-            if own[0] > 0
-        )
+        return tuple(compress(subject.tree.links, subject.tree.link_inertial[:, 0] > 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,11 +152,8 @@ def fitted(signals: Signals, link: str, part: slice) -> np.ndarray | None:
     square = columns.T @ columns
     if not len(values) or np.trace(square) <= 0:
         return None
-    return np.asarray(
-        np.linalg.solve(
-            square + RIDGE * np.trace(square) / 4 * np.eye(len(square)), columns.T @ values
-        )
-    )
+    ridge = RIDGE * np.trace(square) / 4 * np.eye(len(square))
+    return np.asarray(np.linalg.solve(square + ridge, columns.T @ values))
 
 
 def least_mass(subject: Subject, link: str) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -18,6 +18,7 @@ from hyperleg_design.gap.signals.signals import Signals
 OF_ARM, SHORTEST = 0.03, 0.03
 """Usual error over the distance of a link's centre of mass from its joint, at least of so many
 metres."""
+SOURCE = "a centimetre: motors and cables placed by eye in the drawing (assumed)"
 
 
 class LinkCom(OwnInertiaEffect):
@@ -31,18 +32,9 @@ class LinkCom(OwnInertiaEffect):
     """Assumed: links are made as drawn, while zeros of encoders slip."""
     summary: ClassVar[str] = "a link's centre of mass is elsewhere than modelled"
     parameters: ClassVar[tuple[Parameter, ...]] = tuple(
-        Parameter(
-            axis,
-            "m",
-            0.0,
-            -0.3,
-            0.3,
-            0.01,
-            "a centimetre: motors and cables placed by eye in the drawing (assumed)",
-        )
-        for axis in "xyz"
+        Parameter(axis, "m", 0.0, -0.3, 0.3, 0.01, SOURCE) for axis in "xyz"
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {"several postures": INERTIAL}
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {"several postures": INERTIAL}
 
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
@@ -58,13 +50,8 @@ class LinkCom(OwnInertiaEffect):
     def added(self, own: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Of the moved link less the link."""
         mass, com, inertia = mass_properties(own)
-        return np.stack(
-            [
-                inertial_parameters(mass, com + shift, inertia)
-                - inertial_parameters(mass, com, inertia)
-                for shift in values
-            ]
-        )
+        as_given = inertial_parameters(mass, com, inertia)
+        return np.stack([inertial_parameters(mass, com + v, inertia) - as_given for v in values])
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:

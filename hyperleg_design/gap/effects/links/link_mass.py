@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
@@ -20,6 +20,7 @@ LARGEST_ERROR, HEAVIER = 0.8, 5.0
 it for as much again [nat]."""
 DRAWN = 0.03
 """Usual error of a link that is drawn as it is built, over its mass."""
+SOURCE = "10 % of the link's own mass: cables, screws and glue that drawings leave out (assumed)"
 
 
 class LinkMass(OwnInertiaEffect):
@@ -30,21 +31,10 @@ class LinkMass(OwnInertiaEffect):
     identifier: ClassVar[str] = "link_mass"
     summary: ClassVar[str] = "a link's own mass is off, its centre of mass is not"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "mass",
-            "kg",
-            0.0,
-            -20.0,
-            100.0,
-            0.2,
-            "10 % of the link's own mass: cables, screws and glue that drawings leave out "
-            "(assumed)",
-        ),
+        Parameter("mass", "kg", 0.0, -20.0, 100.0, 0.2, SOURCE),
     )
     linear: ClassVar[bool] = True
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "several postures": frozenset({"payload"})
-    }
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {"several postures": {"payload"}}
 
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:

@@ -32,6 +32,9 @@ NEGATIVE = 8.0
 INWARD, OUTERMOST = 3.0, 2.0
 """Log odds against a load far from the ends of a robot, and for one on a link that carries none, or
 on a base (assumed: loads hang on hands and lie on backs) [nat]."""
+MASS_SOURCE = "UR10e logs with 2.8 kg; tools and batteries, 20 % of what the link moves (assumed)"
+COM_X_SOURCE = "centre of mass in the link's frame: a hand's breadth (assumed)"
+GYRATION_SOURCE = "of a body 10 cm across (assumed)"
 
 
 class Payload(InertialEffect):
@@ -46,37 +49,11 @@ class Payload(InertialEffect):
     identifier: ClassVar[str] = "payload"
     summary: ClassVar[str] = "a mass that hangs on a link and that the model does not have"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "mass",
-            "kg",
-            0.0,
-            -20.0,
-            100.0,
-            0.5,
-            "UR10e logs with 2.8 kg; tools and batteries, 20 % of what the link moves (assumed)",
-        ),
-        Parameter(
-            "com_x",
-            "m",
-            0.0,
-            -1.0,
-            1.0,
-            0.05,
-            "centre of mass in the link's frame: a hand's breadth (assumed)",
-            shape=True,
-        ),
+        Parameter("mass", "kg", 0.0, -20.0, 100.0, 0.5, MASS_SOURCE),
+        Parameter("com_x", "m", 0.0, -1.0, 1.0, 0.05, COM_X_SOURCE, shape=True),
         Parameter("com_y", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),
         Parameter("com_z", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),
-        Parameter(
-            "gyration_squared",
-            "m^2",
-            0.0,
-            0.0,
-            0.1,
-            0.0025,
-            "of a body 10 cm across (assumed)",
-            shape=True,
-        ),
+        Parameter("gyration_squared", "m^2", 0.0, 0.0, 0.1, 0.0025, GYRATION_SOURCE, shape=True),
     )
 
     @override

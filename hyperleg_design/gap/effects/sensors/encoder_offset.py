@@ -2,31 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from collections.abc import Mapping, Set
+from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import POSTURES, STILL, Excitation, Motion, at_joints
+from hyperleg_design.gap.effects.excitation import SWINGING, Need
 from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.kinds import JointEffect
 from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.effects.placed import JointHooks
 from hyperleg_design.gap.model.memoized import memoized
-from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.alteration import Alteration, Live
 
 NODES = 5
 """Positions at which the torque is computed: it is a trigonometric polynomial of second degree in
 one joint's angle."""
 
 Basis = dict[str, tuple[np.ndarray, np.ndarray]]
-USUAL = 0.003
-"""Usual error of an encoder's zero [rad]."""
+SOURCE = "up to 0.1 rad on calibrated legs (PACE, arXiv 2509.06342)"
+
+
+class _Shifted(JointHooks):
+    """What controller, policy and log are told of a joint's position is off."""
+
+    offset: np.ndarray
+
+    def measured(self, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        position[:, self.place] += self.offset
+        return position, velocity
 
 
 class EncoderOffset(JointEffect):
@@ -43,31 +49,14 @@ class EncoderOffset(JointEffect):
     nuisance_rank: ClassVar[int] = 4
     summary: ClassVar[str] = "a joint's encoder reads a constant angle too much"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "offset",
-            "rad",
-            0.0,
-            -0.3,
-            0.3,
-            0.03,
-            "up to 0.1 rad on calibrated legs (PACE, arXiv 2509.06342)",
-        ),
+        Parameter("offset", "rad", 0.0, -0.3, 0.3, 0.03, SOURCE, spread=0.003),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    hooks: ClassVar[type[JointHooks]] = _Shifted
+    needs: ClassVar[Need] = SWINGING
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "several postures": INERTIAL | {"imu_bias", "joint_spring", "torque_constant"}
     }
     look_alikes: ClassVar[Mapping[str, str]] = {"link_com": "several postures"}
-
-    @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """An angle, at every joint."""
-        spreads = np.zeros(len(self.parameters))
-        spreads[0] = USUAL
-        return dict.fromkeys(self.locations(subject), spreads)
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        return at_joints(self.identifier, motion, motion.swinging, POSTURES, STILL)
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -82,10 +71,6 @@ class EncoderOffset(JointEffect):
             found[residual_name][..., rows] = np.tensordot(powers, parts, 1)
         found["motion"][..., joint] -= signals.subject.spring[joint] * offset[:, None]
         return found
-
-    @override
-    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        return ShiftedEncoder(location, np.asarray(values, float)[..., 0])
 
 
 def _waves(offset: np.ndarray) -> np.ndarray:
@@ -118,24 +103,3 @@ def _basis(signals: Signals, joint: int) -> Basis:
         rows = np.flatnonzero(np.nanmax(np.abs(differences), (0, 1)) > 1e-12)
         found[residual_name] = (rows, np.tensordot(matrix, differences[..., rows], 1))
     return found
-
-
-class _Shifted(Live):
-    alteration: ShiftedEncoder
-
-    def prepare(self) -> None:
-        self.place = self.machine.joint(self.alteration.joint)
-
-    def measured(self, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        position[:, self.place] += self.alteration.offset
-        return position, velocity
-
-
-@dataclass(frozen=True, eq=False)
-class ShiftedEncoder(Alteration):
-    """What controller, policy and log are told of a joint's position is off."""
-
-    live: ClassVar[type[Live] | None] = _Shifted
-    joint: str
-    offset: Any
-    """`()` or `(n,)` [rad]."""

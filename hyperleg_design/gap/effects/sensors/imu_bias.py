@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -45,21 +45,17 @@ class ImuBias(Effect):
     identifier: ClassVar[str] = "imu_bias"
     kind: ClassVar[str] = "sensor"
     summary: ClassVar[str] = "gyro and accelerometer are off by a constant"
-    parameters: ClassVar[tuple[Parameter, ...]] = (
-        *(Parameter(f"gyro_{axis}", "rad/s", 0.0, -0.5, 0.5, 0.01, _GYRO) for axis in "xyz"),
-        *(
-            Parameter(f"accelerometer_{axis}", "m/s^2", 0.0, -5.0, 5.0, 0.2, _ACCELEROMETER)
-            for axis in "xyz"
-        ),
+    parameters: ClassVar[tuple[Parameter, ...]] = tuple(
+        Parameter(f"{sensor}_{axis}", unit, 0.0, -most, most, typical, source, spread)
+        for sensor, unit, most, typical, source, spread in (
+            ("gyro", "rad/s", 0.5, 0.01, _GYRO, GYRO),
+            ("accelerometer", "m/s^2", 5.0, 0.2, _ACCELEROMETER, ACCELEROMETER),
+        )
+        for axis in "xyz"
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "rest level": INERTIAL | {"encoder_offset", "joint_spring"}
     }
-
-    @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Of gyro and accelerometer."""
-        return dict.fromkeys(self.locations(subject), USUAL)
 
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -94,12 +90,8 @@ class ImuBias(Effect):
             spin = base.angular_velocity - (subject.imu_rotation @ one[:3] if by_gyro else 0.0)
             force = base.specific_force
             if by_accelerometer:
-                force = (
-                    force
-                    - subject.imu_rotation @ one[3:]
-                    + centripetal(base.angular_velocity)
-                    - centripetal(spin)
-                )
+                force = force - subject.imu_rotation @ one[3:]
+                force = force + centripetal(base.angular_velocity) - centripetal(spin)
             true = dataclasses.replace(base, angular_velocity=spin, specific_force=force)
             rows[number] = rigid.inverse_dynamics(subject, *motion, true) - needed
             if wrench is not None:

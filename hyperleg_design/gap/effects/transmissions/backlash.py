@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import dataclasses
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import (
-    FEW,
-    REVERSES,
-    Excitation,
-    Motion,
-    at_joints,
-    by_speeds,
-)
+from hyperleg_design.gap.effects.excitation import REVERSING, Need
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
 from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import SIDES
 from hyperleg_design.gap.effects.transmissions import belt, slack
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model import machine
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
@@ -52,16 +45,11 @@ class Backlash(MotorEffect):
         Parameter("coasting", "", 1.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=COASTING),
         Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=belt.RUBBING),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    needs: ClassVar[Need] = dataclasses.replace(REVERSING, speeds=True)
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "preload": FRICTION | LATE | {"cogging", "transmission_elasticity"},
         "log rotor speeds": BESIDE_TRANSMISSIONS,
     }
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        return by_speeds(self.identifier, log, motion) or at_joints(
-            self.identifier, motion, motion.reversing, REVERSES, FEW
-        )
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -77,22 +65,11 @@ class Backlash(MotorEffect):
         """Its ends are as hard as simulations resolve, and damped to bounce as in the trace."""
         motor = subject.motors.index(location)
         bounce = np.log(slack.RESTITUTION)
-        damping = (
-            2
-            * abs(bounce)
-            / np.hypot(np.pi, bounce)
-            * machine.rotor(subject, motor)
-            * 2
-            * np.pi
-            * STIFFEST
-        )
-        values = np.asarray(values, float)
-        return Belt(
-            location,
-            play=values[..., 0] * subject.motor_over_joint(motor),
-            damping=float(damping),
-            side=values[..., 1],
-        )
+        ratio = abs(bounce) / np.hypot(np.pi, bounce)
+        damping = 2 * ratio * machine.rotor(subject, motor) * 2 * np.pi * STIFFEST
+        angle, side, *_ = np.moveaxis(np.asarray(values, float), -1, 0)
+        play = angle * subject.motor_over_joint(motor)
+        return Belt(location, play=play, damping=float(damping), side=side)
 
     @override
     def fixed(self, values: np.ndarray) -> np.ndarray:

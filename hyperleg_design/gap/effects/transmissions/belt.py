@@ -69,11 +69,8 @@ def load(signals: Signals, motor: int) -> np.ndarray:
     """
     subject = signals.subject
     needed = signals.rigid - signals.acceleration @ subject.armature.T
-    return band_limited(
-        applied(subject.motor_from_joint[motor : motor + 1], needed)[:, 0],
-        signals.step,
-        BAND / signals.step,
-    )
+    through = applied(subject.motor_from_joint[motor : motor + 1], needed)[:, 0]
+    return band_limited(through, signals.step, BAND / signals.step)
 
 
 def frictionless(signals: Signals, motor: int) -> np.ndarray:
@@ -206,14 +203,10 @@ def trace(
             default not.
     """
     at_joints = 1 - side[:, None]
-    found = at_motor(
-        signals,
-        motor,
-        at_joints * rotor(signals.subject, motor) * second_derivative(moved, signals.step),
-    )
-    found |= turned(
-        signals, motor, at_joints * first_derivative(moved if seen is None else seen, signals.step)
-    )
+    inertia = at_joints * rotor(signals.subject, motor)
+    found = at_motor(signals, motor, inertia * second_derivative(moved, signals.step))
+    told = first_derivative(moved if seen is None else seen, signals.step)
+    found |= turned(signals, motor, at_joints * told)
     if side.any():
         subject = signals.subject
         share = subject.motor_from_joint[motor]

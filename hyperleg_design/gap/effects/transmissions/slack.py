@@ -58,12 +58,8 @@ def slack(
             if at_rotor and behind is not None and behind[row] >= CHOSEN:
                 way = _rubbing(kicks[at_rotor], signals, motor, float(width) / 2)
             else:
-                way = _bounced(
-                    kicks[at_rotor],
-                    signals.step,
-                    float(width) / 2,
-                    0.0 if at_rotor else RESTITUTION,
-                )
+                bounce = 0.0 if at_rotor else RESTITUTION
+                way = _bounced(kicks[at_rotor], signals.step, float(width) / 2, bounce)
             found[row] = free * np.array(way)
         if free < 1:
             found[row] += (1 - free) * float(width) / 2 * pushed()

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from typing import ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, at_joints, by_speeds
+from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
 from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import SIDES
 from hyperleg_design.gap.effects.transmissions import belt
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model import machine
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
@@ -33,6 +32,9 @@ SIDE = 2
 """Parameter that tells where encoders are."""
 TELLING = 8.0
 """Content of the motion that tells elasticity from delay [Hz]."""
+COMPLIANCE_SOURCE = "belt resonance 5-30 Hz (engineering estimate); `usual` knows the rotor"
+DAMPING_RATIO_SOURCE = "steel-corded belts ring for a few periods (assumed)"
+STIFFENING_SOURCE = "gears are two to three times as stiff beyond some mrad (data sheets)"
 
 
 class TransmissionElasticity(MotorEffect):
@@ -48,65 +50,36 @@ class TransmissionElasticity(MotorEffect):
     """How rotors move on belts that give was 10 to 25 % off in development."""
     summary: ClassVar[str] = "a belt, cable or gear gives under load, so motor and joint move apart"
     parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("compliance", "rad/Nm", 0.0, 0.0, 1e4, 0.01, COMPLIANCE_SOURCE),
         Parameter(
-            "compliance",
-            "rad/Nm",
-            0.0,
-            0.0,
-            1e4,
-            0.01,
-            "belt resonance 5-30 Hz (engineering estimate); `usual` knows the rotor",
-        ),
-        Parameter(
-            "damping_ratio",
-            "",
-            DAMPING_RATIO,
-            0.0,
-            1.0,
-            0.05,
-            "steel-corded belts ring for a few periods (assumed)",
-            shape=True,
+            "damping_ratio", "", DAMPING_RATIO, 0.0, 1.0, 0.05, DAMPING_RATIO_SOURCE, shape=True
         ),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
         Parameter("behind", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=belt.RUBBING),
-        Parameter(
-            "stiffening",
-            "1/rad",
-            0.0,
-            0.0,
-            200.0,
-            STIFFER,
-            "gears are two to three times as stiff beyond some mrad (data sheets)",
-            shape=True,
-        ),
+        Parameter("stiffening", "1/rad", 0.0, 0.0, 200.0, STIFFER, STIFFENING_SOURCE, shape=True),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.content > TELLING,
+        f"motion reaches past {TELLING:.0f} Hz",
+        f"motion holds nothing above {TELLING:.0f} Hz: looks like delay",
+        speeds=True,
+    )
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "several amplitudes": FRICTION - {"viscous_friction"} | {"backlash"},
         "chirp past 8 Hz": LATE | {"controller_gain", "rotor_inertia", "viscous_friction"},
         "log rotor speeds": BESIDE_TRANSMISSIONS,
     }
-    look_alikes: ClassVar[Mapping[str, str]] = {
-        "command_delay": "a chirp past 8 Hz",
-    }
+    look_alikes: ClassVar[Mapping[str, str]] = {"command_delay": "a chirp past 8 Hz"}
 
     @override
     def holds_torque(self, values: np.ndarray) -> bool:
         return bool(values[SIDE] >= belt.CHOSEN and (values[3] >= belt.CHOSEN or values[4] > 0))
 
     @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        good = f"motion reaches past {TELLING:.0f} Hz"
-        lacking = f"motion holds nothing above {TELLING:.0f} Hz: looks like delay"
-        return by_speeds(self.identifier, log, motion) or at_joints(
-            self.identifier, motion, motion.content > TELLING, good, lacking
-        )
-
-    @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         motor = signals.subject.motors.index(location)
-        compliance, damping_ratio, side, behind, stiffening = np.atleast_2d(
-            np.asarray(values, float)
-        ).T
+        settings = np.atleast_2d(np.asarray(values, float)).T
+        compliance, damping_ratio, side, behind, stiffening = settings
         needed, told = belt.load(signals, motor), belt.transmitted(signals, motor)
         moved = belt.stretch(signals, needed, motor, compliance, damping_ratio, stiffening)
         bent = (stiffening > 0) | (behind >= belt.CHOSEN)
@@ -116,11 +89,9 @@ class TransmissionElasticity(MotorEffect):
                 moved[mine] = belt.stretch(
                     signals, own, motor, *(v[mine] for v in (compliance, damping_ratio, stiffening))
                 )
-        seen = (
-            None
-            if told is needed
-            else belt.stretch(signals, told, motor, compliance, damping_ratio, stiffening)
-        )
+        seen = None
+        if told is not needed:
+            seen = belt.stretch(signals, told, motor, compliance, damping_ratio, stiffening)
         return belt.trace(signals, motor, moved, side, seen, behind)
 
     @override

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, by_speeds
+from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import (
     BESIDE_TRANSMISSIONS,
     SCALING,
@@ -21,7 +21,6 @@ from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import SIDES, at_motor, given, motor_velocity
-from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model import friction
 from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
@@ -29,6 +28,8 @@ from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.alteration import Alteration, Live
 from hyperleg_design.simulation.drives.machine import Machine
+
+SCALE_SOURCE = "linkages off their design point, one tooth of 40 on a pulley (assumed)"
 
 
 class TransmissionRatio(MotorEffect):
@@ -50,36 +51,22 @@ class TransmissionRatio(MotorEffect):
     """Assumed: belts have the ratio of their teeth."""
     summary: ClassVar[str] = "a transmission's ratio differs from the model's"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter(
-            "scale",
-            "",
-            1.0,
-            0.7,
-            1.4,
-            0.03,
-            "linkages off their design point, one tooth of 40 on a pulley (assumed)",
-        ),
+        Parameter("scale", "", 1.0, 0.7, 1.4, 0.03, SCALE_SOURCE),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),
     )
-    told_apart: ClassVar[Mapping[str, frozenset[str]]] = {
-        "chirp past 8 Hz": frozenset({"torque_constant"}),
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.swinging,
+        "through the torques only: it looks like controller_gain",
+        "no motor speeds, and joints hardly move",
+        speeds=True,
+    )
+    told_apart: ClassVar[Mapping[str, Set[str]]] = {
+        "chirp past 8 Hz": {"torque_constant"},
         "torque-off swing": WITHOUT_DRIVE,
         "known payload": WITH_LOAD,
         "known angle": SCALING | {"rotor_inertia"},
         "log rotor speeds": BESIDE_TRANSMISSIONS | {"transmission_elasticity", "backlash"},
     }
-
-    @override
-    def excited(self, log: Log, motion: Motion) -> Excitation:
-        if (shown := by_speeds(self.identifier, log, motion)) is not None:
-            return shown
-        passed = motion.torque & motion.swinging
-        why = (
-            "through the torques only: it looks like controller_gain"
-            if passed.any()
-            else "no motor speeds, and joints hardly move"
-        )
-        return Excitation(self.identifier, bool(passed.any()), tuple(motion.joints[passed]), why)
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:

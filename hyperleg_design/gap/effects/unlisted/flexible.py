@@ -12,7 +12,6 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.kinds import JointEffect
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
@@ -55,14 +54,6 @@ class Flexible(JointEffect):
         return tuple(self.inputs)[round(float(np.reshape(values, -1)[-1]))]
 
     @override
-    def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the torque that the joint is made for."""
-        strength = float(joint_strength(subject)[subject.joints.index(location)])
-        return np.array(
-            [1.0 if parameter.shape else SHARE * strength for parameter in self.parameters]
-        )
-
-    @override
     def odds(self, location: str, subject: Subject, values: np.ndarray) -> float:
         """Each of the inputs is as likely."""
         return -float(np.log(len(self.inputs)))
@@ -79,12 +70,8 @@ class Flexible(JointEffect):
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        raise InputError(
-            self.identifier,
-            "location",
-            location,
-            "is added to no simulation: nobody knows what it is in other motions",
-        )
+        remedy = "is added to no simulation: nobody knows what it is in other motions"
+        raise InputError(self.identifier, "location", location, remedy)
 
     @override
     def describe(self, values: np.ndarray) -> str:
@@ -92,7 +79,11 @@ class Flexible(JointEffect):
 
 
 def parameters(
-    count: int, unit: str, inputs: Mapping[str, str], orders: Sequence[str] = ()
+    count: int,
+    unit: str,
+    inputs: Mapping[str, str],
+    orders: Sequence[str] = (),
+    usual: float = SHARE,
 ) -> tuple[Parameter, ...]:
     """Parameters of a flexible effect.
 
@@ -101,13 +92,14 @@ def parameters(
         unit: of these.
         inputs: what the shapes may be of.
         orders: further parameters that only shape.
+        usual: size of one shape; of torques, over what the joint is made for.
 
     Returns:
         Sizes, orders, and the place of the input among all.
     """
     shape = tuple(Parameter(name, "", 1.0, 0.0, 1e4, 1.0, "assumed", shape=True) for name in orders)
     sizes = tuple(
-        Parameter(f"size_{i}", unit, 0.0, -1e4, 1e4, 1.0, "of one shape (assumed)")
+        Parameter(f"size_{i}", unit, 0.0, -1e4, 1e4, usual, "assumed", of_strength=unit == "Nm")
         for i in range(count)
     )
     last = len(inputs) - 1.0

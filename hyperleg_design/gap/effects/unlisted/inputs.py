@@ -39,7 +39,7 @@ def functions(signals: Signals, joint: int, name: str) -> np.ndarray:
     Returns:
         `(k, t)`, no more than `SHAPES`; unknown ticks zero.
     """
-    shapes = np.array(_FUNCTIONS[name](signals, joint)).reshape(-1, len(signals.time))
+    shapes = np.array(_FUNCTIONS[name][1](signals, joint)).reshape(-1, len(signals.time))
     return np.nan_to_num(shapes)
 
 
@@ -114,24 +114,15 @@ def _of_others(signals: Signals, joint: int) -> list[np.ndarray]:
     return states + [signals.velocity[:, k] / SPEED for k in near]
 
 
-INPUTS = {
-    "position": "its position, not as a spring's",
-    "speed": "its speed, not as friction's",
-    "direction": "its position and the direction of motion",
-    "load": "its load, not in proportion",
-    "strength": "its load, in another proportion at each position",
-    "memory": "the way that it came",
-    "time": "time",
-    "others": "other joints",
+_FUNCTIONS: dict[str, tuple[str, Callable[[Signals, int], list[np.ndarray]]]] = {
+    "position": ("its position, not as a spring's", _of_position),
+    "speed": ("its speed, not as friction's", _of_speed),
+    "direction": ("its position and the direction of motion", _of_direction),
+    "load": ("its load, not in proportion", _of_load),
+    "strength": ("its load, in another proportion at each position", _of_strength),
+    "memory": ("the way that it came", _of_memory),
+    "time": ("time", _of_time),
+    "others": ("other joints", _of_others),
 }
+INPUTS = {name: words for name, (words, _) in _FUNCTIONS.items()}
 """What the torque depends on, in words."""
-_FUNCTIONS: dict[str, Callable[[Signals, int], list[np.ndarray]]] = {
-    "position": _of_position,
-    "speed": _of_speed,
-    "direction": _of_direction,
-    "load": _of_load,
-    "strength": _of_strength,
-    "memory": _of_memory,
-    "time": _of_time,
-    "others": _of_others,
-}

@@ -66,25 +66,16 @@ class LeaningVertical(Effect):
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        subject, rest = signals.subject, np.zeros_like(signals.position)
-        needed = np.stack(
-            [
-                inverse_dynamics(
-                    replace(subject, gravity=across), signals.position, rest, rest, rotors=False
-                )
-                for across in _across(subject.gravity)
-            ]
-        )
+        rest = np.zeros_like(signals.position)
+        motion = signals.position, rest, rest
+        leaning = (replace(signals.subject, gravity=g) for g in _across(signals.subject.gravity))
+        needed = np.stack([inverse_dynamics(one, *motion, rotors=False) for one in leaning])
         return {"motion": np.tensordot(np.atleast_2d(values), needed, 1)}
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        raise InputError(
-            self.identifier,
-            "location",
-            location,
-            "is added to no simulation: level the base, or declare the logs' `gravity`",
-        )
+        remedy = "is added to no simulation: level the base, or declare the logs' `gravity`"
+        raise InputError(self.identifier, "location", location, remedy)
 
     @override
     def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:

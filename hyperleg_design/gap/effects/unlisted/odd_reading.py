@@ -12,7 +12,6 @@ from hyperleg_design.gap.effects.needed import needed
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.unlisted.flexible import Flexible, parameters
 from hyperleg_design.gap.model.memoized import memoized
-from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 
 ORDERS = (1, 2, 3, 4)
@@ -35,12 +34,9 @@ class OddReading(Flexible):
     summary: ClassVar[str] = "a joint's encoder is wrong by an angle that is no constant"
     inputs: ClassVar[Mapping[str, str]] = INPUTS
     sentence: ClassVar[str] = "is read with an error"
-    parameters: ClassVar[tuple[Parameter, ...]] = parameters(2 * len(ORDERS), "rad", INPUTS)
-
-    @override
-    def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """The same angle at every joint."""
-        return np.array([1.0 if parameter.shape else USUAL for parameter in self.parameters])
+    parameters: ClassVar[tuple[Parameter, ...]] = parameters(
+        2 * len(ORDERS), "rad", INPUTS, usual=USUAL
+    )
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:

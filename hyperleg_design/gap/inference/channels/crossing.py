@@ -30,12 +30,10 @@ class Crossing:
         """Of columns weighted as the residual `(m, S)`."""
         present = columns != 0  # numpy looks through truth values many times faster than numbers
         shown = [np.flatnonzero(one.shows(present)) for one in channels]
-        made = [
-            one.crossed(columns[some] if len(some) < len(columns) else columns)
-            if len(some)
-            else (np.zeros((0, 0, 0)), np.zeros((0, 0, 0)))
-            for one, some in zip(channels, shown, strict=True)
-        ]
+        made = [(np.zeros((0, 0, 0)), np.zeros((0, 0, 0)))] * len(shown)
+        for place, (one, some) in enumerate(zip(channels, shown, strict=True)):
+            if len(some):
+                made[place] = one.crossed(columns[some] if len(some) < len(columns) else columns)
         return cls(len(columns), tuple(shown), tuple(c for c, _ in made), tuple(o for _, o in made))
 
     def left(self, channels: Sequence[Channel], theta: np.ndarray) -> list[Residual]:
@@ -45,11 +43,10 @@ class Crossing:
             channels: of which these are the products.
             theta: the trace over the columns `(m,)`.
         """
+        each = zip(channels, self.shown, self.cross, self.own, strict=True)
         return [
             one.left(cross, own, theta[some]) if len(some) else one.whole_residual
-            for one, some, cross, own in zip(
-                channels, self.shown, self.cross, self.own, strict=True
-            )
+            for one, some, cross, own in each
         ]
 
     def reduced(self, channels: Sequence[Channel], scales: Sequence[Scales]) -> np.ndarray:

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from hyperleg_design.gap.effects.unlisted.inputs import FAST, SLOW, SPEED
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
 
-SLOW, FAST = 0.3, 2.0
-"""Speeds over which friction of one direction fades [rad/s] (assumed)."""
-ANGLE, SPEED = 0.7, 2.0
-"""Length scales of the random features [rad], [rad/s] (assumed)."""
+ANGLE = 0.7
+"""Length scale of angles in the random features [rad] (assumed); `SPEED` is that of speeds."""
 NEIGHBOURS = 2
 """Joints of the same chain whose state a joint's shapes hold."""
 SEED = 7

@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hyperleg_design.gap.effects.sensors.imu_bias import IMU, USUAL, ImuBias
+from hyperleg_design.gap.inference.parameters import NORMAL
 from hyperleg_design.gap.inference.rules import CauseRules
 from hyperleg_design.gap.model.mechanism import quaternion_rotation
 from hyperleg_design.gap.results.diagnosis import Value
@@ -37,8 +38,6 @@ UPRIGHT = 0.15
 vertical that leans."""
 LEANING = 0.01
 """Angle of a vertical from which it is told [rad] (assumed: robots stand as upright as that)."""
-INTERVAL = 1.96
-"""Of a normal distribution, 95 %."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +70,7 @@ class Offset:
         """What was found, as a sentence of a report."""
         if self.leans:
             return (
-                f"feels a vertical that leans by {self.leans:.2g} rad against "
-                f"base_orientation: "
+                f"feels a vertical that leans by {self.leans:.2g} rad against base_orientation: "
                 f"gravity, orientation or the accelerometer is off"
             )
         source = (
@@ -112,24 +110,16 @@ def imu_offset(
         leans = _leans(signals[0], mean[3:])
     if 0 < leans < LEANING:
         return None
-    part = (
-        slice(0, 3)
-        if np.nanmax(over[:3], initial=0) >= np.nanmax(over[3:], initial=0)
-        else slice(3, 6)
-    )
+    by_gyro = np.nanmax(over[:3], initial=0) >= np.nanmax(over[3:], initial=0)
+    part = slice(0, 3) if by_gyro else slice(3, 6)
     apart = means[:, part] if len(means) > 1 else logs[0].halves[:, part]
     others = (np.nansum(apart, 0) - apart) / max(len(apart) - 1, 1)
     left = float(np.sqrt(np.nanmean(np.sum((apart - others) ** 2, -1))))
     size = float(np.linalg.norm(mean[part]))
-    values = {
-        p.name: Value(float(m), float(m - INTERVAL * e), float(m + INTERVAL * e), p.unit)
-        if np.isfinite(m)
-        else Value(0.0, 0.0, 0.0, p.unit)
-        for p, m, e in zip(ImuBias.parameters, mean, error, strict=True)
-    }
-    return Offset(
-        values, "gyro" if part.start == 0 else "accelerometer", size, min(left, size), leans
-    )
+    ends = np.array([mean, mean - NORMAL * error, mean + NORMAL * error])
+    named = zip(ImuBias.parameters, np.where(np.isfinite(mean), ends, 0.0).T.tolist(), strict=True)
+    values = {p.name: Value(middle, low, high, p.unit) for p, (middle, low, high) in named}
+    return Offset(values, "gyro" if by_gyro else "accelerometer", size, min(left, size), leans)
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,11 +157,8 @@ def _compared(signals: Signals) -> _Compared:
         world = np.einsum(
             "tji,tj->ti", rotation, smooth(log.time, velocity, ticks).first - subject.gravity
         )
-        at_sensor = (
-            world
-            + np.cross(turn, subject.imu_position)
-            + np.cross(rate, np.cross(rate, subject.imu_position))
-        )
+        lever = subject.imu_position
+        at_sensor = world + np.cross(turn, lever) + np.cross(rate, np.cross(rate, lever))
         apart[:, 3:] = on_ticks(log, felt, ticks) - at_sensor @ subject.imu_rotation
         tilted = np.cross(subject.gravity, np.eye(3))[np.argsort(np.abs(subject.gravity))[:2]]
         turned = np.cross(at_sensor[:, None], np.eye(3))
@@ -183,13 +170,10 @@ def _compared(signals: Signals) -> _Compared:
     if len(apart) < number * shortest:
         return _Compared()
     pieces = np.array([piece.mean(0) for piece in np.array_split(apart, number)])
-    return _Compared(
-        apart.mean(0),
-        pieces.std(0, ddof=1) / np.sqrt(number),
-        np.array([half.mean(0) for half in np.array_split(apart, 2)]),
-        pieces[:, 3:],
-        np.array([piece.mean(0) for piece in np.array_split(leaning, number)]),
-    )
+    error = pieces.std(0, ddof=1) / np.sqrt(number)
+    halves = np.array([half.mean(0) for half in np.array_split(apart, 2)])
+    leaning = np.array([piece.mean(0) for piece in np.array_split(leaning, number)])
+    return _Compared(apart.mean(0), error, halves, pieces[:, 3:], leaning)
 
 
 def _stays_in_sensor(logs: Sequence[_Compared]) -> bool:

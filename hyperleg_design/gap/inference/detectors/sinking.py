@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hyperleg_design.gap.effects.ground.ground_compliance import USUAL, GroundCompliance
-from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoot
+from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
+from hyperleg_design.gap.inference.parameters import NORMAL
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, Footing, footings
 from hyperleg_design.gap.signals.nominal_ground import Law
@@ -93,10 +94,8 @@ def _sink(
         return None
     scale, error = given
     if healthy is not None and healthy[0] > 0:
-        scale, error = (
-            scale / healthy[0],
-            float(np.hypot(error, scale * healthy[1] / healthy[0])) / healthy[0],
-        )
+        error = float(np.hypot(error, scale * healthy[1] / healthy[0])) / healthy[0]
+        scale = scale / healthy[0]
     if scale - CERTAIN * error < 1 or scale < 1 + UNUSUAL * USUAL:
         return None
     nominal = float(
@@ -107,17 +106,15 @@ def _sink(
     spread = float(
         np.sqrt(np.mean(np.concatenate([(pad.load - pad.load.mean()) ** 2 for pad in pads])))
     )
-    parts = (
-        logs
-        if len(logs) > 1 and all(len(own) >= LEAST_CONTACTS for own in logs)
-        else [[half for pad in pads if (half := _half(pad, late))] for late in (False, True)]
-    )
+    parts = logs
+    if len(logs) < 2 or any(len(own) < LEAST_CONTACTS for own in logs):
+        parts = [[half for pad in pads if (half := _half(pad, late))] for late in (False, True)]
     others = [_compliance([pad for o in parts if o is not part for pad in o]) for part in parts]
     off = [
         abs(nominal * other[0] - slope) if other is not None else slope - usual for other in others
     ]
     size, left = spread * (slope - usual), spread * float(np.sqrt(np.mean(np.square(off))))
-    reach = INTERVAL * float(np.hypot(error, PADS * scale))
+    reach = NORMAL * float(np.hypot(error, PADS * scale))
     says = (
         f"sinks by {1e3 * slope * spread:.2g} mm with the usual changes of its pads' load, "
         f"{scale:.2g} times as much as it should"

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.gap.effects.ground.ground_friction import USUAL, GroundFriction
-from hyperleg_design.gap.inference.detectors.underfoot import INTERVAL, Underfoot
+from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
+from hyperleg_design.gap.inference.parameters import NORMAL
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, footings
 from hyperleg_design.gap.signals.signals import Signals
@@ -109,7 +110,7 @@ def _slip(
     left = float(
         np.sqrt(np.mean((load * (told - np.repeat(others, [len(r) for _, r in parts]))) ** 2))
     )
-    reach = INTERVAL * scale * float(np.hypot(unsure, _spread(told) / 2))
+    reach = NORMAL * scale * float(np.hypot(unsure, _spread(told) / 2))
     value = Value(scale, max(scale - reach, 0.0), scale + reach, "")
     time = sum(one.time for one in logs)
     says = f"slides for {time:.2g} s with a tangential force of {ratio:.3g} times its load"
@@ -176,24 +177,17 @@ def contacts(signals: Signals, place: int) -> Contacts | None:
         (foot.pad_force, foot.pad_slide) if by_pad else (foot.force[:, None], foot.slide[:, None])
     )
     load, size = force[..., 2], np.linalg.norm(force[..., :2], axis=-1)
-    known = (
-        np.isfinite(force).all(-1)
-        & np.isfinite(slide).all(-1)
-        & (signals.valid & foot.settled)[:, None]
-    )
+    known = np.isfinite(force).all(-1) & np.isfinite(slide).all(-1)
+    known &= (signals.valid & foot.settled)[:, None]
     loaded = known & (np.nan_to_num(load) > LOADED)
     with np.errstate(divide="ignore", invalid="ignore"):
         way = force[..., :2] / size[..., None]
         against = -(slide * way).sum(-1)
         across = np.linalg.norm(slide + against[..., None] * way, axis=-1)
         slides = loaded & (against > FAST) & (against > STRAIGHT * across)
-        return (
-            Contacts(
-                load, size / load, np.abs(force[..., :2]).sum(-1) / load, against, slides, loaded
-            )
-            if loaded.any()
-            else None
-        )
+        edges = np.abs(force[..., :2]).sum(-1) / load
+        found = Contacts(load, size / load, edges, against, slides, loaded)
+    return found if loaded.any() else None
 
 
 def _sliding(signals: Signals, place: int) -> _Sliding | None:
@@ -203,11 +197,5 @@ def _sliding(signals: Signals, place: int) -> _Sliding | None:
         return None
     slides, loaded = of.slides, of.loaded
     time = float(slides.any(1).sum()) * signals.step
-    return _Sliding(
-        of.load[slides],
-        of.ratio[slides],
-        of.against[slides],
-        of.along_edges[slides],
-        time,
-        of.ratio[loaded],
-    )
+    sliding = of.load[slides], of.ratio[slides], of.against[slides], of.along_edges[slides]
+    return _Sliding(*sliding, time, of.ratio[loaded])

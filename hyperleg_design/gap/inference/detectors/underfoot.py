@@ -9,9 +9,6 @@ from dataclasses import dataclass
 
 from hyperleg_design.gap.results.diagnosis import Value
 
-INTERVAL = 1.96
-"""Of a normal distribution, 95 %."""
-
 
 @dataclass(frozen=True, eq=False)
 class Underfoot:

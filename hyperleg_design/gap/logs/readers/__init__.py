@@ -80,15 +80,10 @@ def _open_folder(path: Path, metadata: Mapping[str, Any] | None) -> list[Log]:
         if fits(path):
             return read(path, metadata)
     inside = sorted(p for p in path.iterdir() if not p.name.startswith("."))
-    folders = [
-        p for p in inside if p.is_dir() and any(fits(p) for fits in (is_sage, is_lerobot, is_bag))
-    ]
-    files = [
-        p
-        for p in inside
-        if p.is_file()
-        and (p.suffix.lower() in (".parquet", ".pt", ".mcap", ".db3", *_TEXTS) or _is_bam(p))
-    ]
+    kinds, endings = (is_sage, is_lerobot, is_bag), (".parquet", ".pt", ".mcap", ".db3", *_TEXTS)
+    folders = [p for p in inside if p.is_dir() and any(fits(p) for fits in kinds)]
+    inside = [p for p in inside if p.is_file()]
+    files = [p for p in inside if p.suffix.lower() in endings or _is_bam(p)]
     if not folders and not files:
         raise InputError(str(path), "", None, f"holds no logs: expects {FORMATS}")
     return [

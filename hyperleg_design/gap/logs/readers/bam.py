@@ -148,15 +148,8 @@ def read_bam(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
             "and R"
         )
     date = re.match(r"\d{4}-\d{2}-\d{2}", path.stem)
-    found["session"] = "_".join(
-        str(part)
-        for part in (
-            content.get("motor"),
-            content.get("mass"),
-            content.get("length"),
-            date[0] if date else path.stem,
-        )
-    )
+    made_of = (content.get(key) for key in ("motor", "mass", "length"))
+    found["session"] = "_".join(map(str, (*made_of, date[0] if date else path.stem)))
     return [made_log(path, path.stem, data["timestamp"], signals, found, said, remarks)]
 
 

@@ -21,8 +21,15 @@ import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.gap.logs import blocks
+from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log
-from hyperleg_design.gap.logs.readers.source import FOLDER_FILE, beside, joint_names, made_log
+from hyperleg_design.gap.logs.readers.source import (
+    FOLDER_FILE,
+    beside,
+    joint_names,
+    lacks,
+    made_log,
+)
 from hyperleg_design.gap.logs.readers.units import FACTORS
 from hyperleg_design.reading import read_json
 
@@ -68,12 +75,8 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
     said = beside(path, metadata)
     features = info.get("features", {})
     if "observation.state" not in features:
-        raise InputError(
-            f"{path.name}/meta/info.json",
-            "features",
-            sorted(features)[:6],
-            "expects observation.state",
-        )
+        where = f"{path.name}/meta/info.json"
+        raise InputError(where, "features", sorted(features)[:6], "expects observation.state")
     found = [name.removesuffix(".pos") for name in _names(features["observation.state"], path.name)]
     joints = joint_names(said, found, path.name)
     table, read, rows = _table(path, [f for f in SIGNALS if f in features])
@@ -81,18 +84,9 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
     remarks.append("time stamps are frame numbers over the frame rate, not measured")
     if read < rows:
         remarks.append(blocks.shortened(rows, read))
-    lacking = [
-        w
-        for w, f in (
-            ("targets", "action"),
-            ("velocities", "observation.velocity"),
-            ("torques", "observation.effort"),
-        )
-        if f not in features
-    ]
-    remarks.append(
-        f"the source lacks {', '.join([*lacking, *([] if said.get('gains') else ['gains'])])}"
-    )
+    lacking = lacks({signal for feature, signal in SIGNALS.items() if feature in features})
+    gains = [] if said.get("gains") else ["gains"]
+    remarks.append(f"the source lacks {', '.join([*lacking, *gains])}")
     made = []
     for episode in np.unique(table["episode_index"]):
         mine = table["episode_index"] == episode
@@ -102,23 +96,13 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
         for feature, signal in SIGNALS.items():
             if feature in table:
                 factors = scale if signal != "joint_torque" else np.ones(len(joints))
-                signals |= {
-                    f"{signal}/{joint}": table[feature][mine][:, i] * factors[i]
-                    for i, joint in enumerate(joints)
-                }
+                values = table[feature][mine][:, : len(joints)]
+                signals |= columns_of({signal: values * factors}, joints)
         name = f"{path.name}_{int(episode):06d}"
-        extra = {key: info[key] for key in ("robot_type", "fps", "codebase_version") if key in info}
-        made.append(
-            made_log(
-                path,
-                name,
-                table["timestamp"][mine],
-                signals,
-                {"extra": {**extra, "episode": int(episode)}},
-                said,
-                remarks,
-            )
-        )
+        about: tuple[str, ...] = ("robot_type", "fps", "codebase_version")
+        extra = {key: info[key] for key in about if key in info} | {"episode": int(episode)}
+        time = table["timestamp"][mine]
+        made.append(made_log(path, name, time, signals, {"extra": extra}, said, remarks))
     if not made:
         raise InputError(path.name, "", None, "is an empty log: no episode has two frames")
     return made
@@ -149,12 +133,8 @@ def _table(path: Path, features: list[str]) -> tuple[dict[str, np.ndarray], int,
 
     files = sorted((path / "data").rglob("*.parquet"))
     if not files:
-        raise InputError(
-            f"{path.name}/data",
-            "",
-            None,
-            "holds no Parquet tables: download the dataset with its data",
-        )
+        remedy = "holds no Parquet tables: download the dataset with its data"
+        raise InputError(f"{path.name}/data", "", None, remedy)
     columns = ["timestamp", "episode_index", *features]
     parts: dict[str, list[np.ndarray]] = {c: [] for c in columns}
     read, rows, held = 0, 0, 0
@@ -212,13 +192,10 @@ def _scale(
             remarks.append(f"positions are taken as degrees, as {kind} has them by default")
         elif np.nanmax(np.abs(table["observation.state"]), initial=0) > LARGEST_ANGLE:
             largest = round(float(np.nanmax(np.abs(table["observation.state"]))), 3)
-            raise InputError(
-                where,
-                "units.position",
-                largest,
-                f'is no angle in rad: say `"units": {{"position": "deg"}}` in '
-                f"{where}/{FOLDER_FILE}",
+            remedy = (
+                f'is no angle in rad: say `"units": {{"position": "deg"}}` in {where}/{FOLDER_FILE}'
             )
+            raise InputError(where, "units.position", largest, remedy)
         else:
             unit = "rad"
             remarks.append("positions are taken as rad: the source does not say")

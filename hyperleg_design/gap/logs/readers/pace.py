@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers.pickle_tensors import read_tensors
-from hyperleg_design.gap.logs.readers.source import beside, joint_names, made_log
+from hyperleg_design.gap.logs.readers.source import beside, joint_names, lacks, made_log
 
 SIGNALS = {
     "dof_pos": "position",
@@ -47,46 +48,30 @@ def read_pace(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
     said = beside(path, metadata)
     for key in ("time", "dof_pos"):
         if not isinstance(content.get(key), np.ndarray):
-            raise InputError(
-                path.name,
-                key,
-                sorted(map(str, content))[:8],
-                "is missing: expects PACE's tensors time, dof_pos, des_dof_pos",
-            )
+            remedy = "is missing: expects PACE's tensors time, dof_pos, des_dof_pos"
+            raise InputError(path.name, key, sorted(map(str, content))[:8], remedy)
     time = np.asarray(content["time"], float).reshape(-1)
     shape = content["dof_pos"].shape
     if len(shape) != 2 or shape[0] != len(time):
         raise InputError(path.name, "dof_pos", shape, f"expects ({len(time)}, joints)")
     found = content.get("joint_names")
-    names = (
-        found
-        if isinstance(found, list | tuple) and len(found) == shape[1]
-        else [f"joint_{i}" for i in range(shape[1])]
-    )
-    joints = joint_names(said, [str(n) for n in names], path.name)
+    named = isinstance(found, list | tuple) and len(found) == shape[1]
+    names = list(map(str, found or ())) if named else [f"joint_{i}" for i in range(shape[1])]
+    joints = joint_names(said, names, path.name)
     signals: dict[str, np.ndarray] = {}
     for key, signal in SIGNALS.items():
         if key in content:
             values = np.asarray(content[key], float)
             if values.shape != shape:
                 raise InputError(path.name, key, values.shape, f"expects {shape}, as dof_pos")
-            signals |= {f"{signal}/{joint}": values[:, i] for i, joint in enumerate(joints)}
+            signals |= columns_of({signal: values}, joints)
     remarks = []
-    if "joints" not in said and names is not found:
+    if "joints" not in said and not named:
         remarks.append(
             "the source names no joints: joint_0, joint_1, ... in its order; say `joints` in a "
             "side file"
         )
-    lacking = [
-        w
-        for w, s in (
-            ("targets", "position_target"),
-            ("velocities", "velocity"),
-            ("torques", "joint_torque"),
-        )
-        if not _has(signals, s)
-    ]
-    if lacking:
+    if lacking := lacks({column.partition("/")[0] for column in signals}):
         remarks.append(f"the source lacks {', '.join(lacking)}")
     if not said.get("gains"):
         remarks.append(
@@ -94,7 +79,3 @@ def read_pace(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
             "`gains` in a side file"
         )
     return [made_log(path, path.stem, time, signals, {}, said, remarks)]
-
-
-def _has(signals: Mapping[str, Any], signal: str) -> bool:
-    return any(column.startswith(signal + "/") for column in signals)

@@ -89,12 +89,8 @@ def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
     }
     if not states:
         there = sorted({topic for topic, _ in streams})
-        raise InputError(
-            path.name,
-            "topics",
-            there,
-            f"holds no joint states: expects {JOINT_STATE} with positions",
-        )
+        remedy = f"holds no joint states: expects {JOINT_STATE} with positions"
+        raise InputError(path.name, "topics", there, remedy)
     main = max(states, key=lambda topic: len(states[topic].time))
     time, signals, disorder = states[main].arrays()
     if disorder:
@@ -107,11 +103,8 @@ def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
         own, values, _ = stream.arrays()
         is_target = kind == JOINT_STATE and _commands(topic)
         if is_target:
-            values = {
-                c.replace("position/", "position_target/", 1): v
-                for c, v in values.items()
-                if c.startswith("position/")
-            }
+            positions = {c: v for c, v in values.items() if c.startswith("position/")}
+            values = {c.replace("position", "position_target", 1): v for c, v in positions.items()}
         new = {column: v for column, v in values.items() if column not in signals}
         signals |= onto(time, own, new, hold=is_target)
         remarks.append(
@@ -198,12 +191,11 @@ def _decoded(message: Any) -> tuple[float, tuple[str, ...], np.ndarray]:
     match message.__msgtype__:
         case kind if kind == IMU:
             o = message.orientation
+            spin, felt = _xyz(message.angular_velocity), _xyz(message.linear_acceleration)
             parts = [
                 _measured([o.w, o.x, o.y, o.z], message.orientation_covariance),
-                _measured(_xyz(message.angular_velocity), message.angular_velocity_covariance),
-                _measured(
-                    _xyz(message.linear_acceleration), message.linear_acceleration_covariance
-                ),
+                _measured(spin, message.angular_velocity_covariance),
+                _measured(felt, message.linear_acceleration_covariance),
             ]
             return stamp, IMU_COLUMNS, np.concatenate(parts)
         case kind if kind == BATTERY:
@@ -237,12 +229,8 @@ def _messages(part: Path) -> Iterator[mcap.Message]:
         yield from mcap.messages(part, READ)
         return
     if magic != SQLITE:
-        raise InputError(
-            part.name,
-            "",
-            None,
-            "is neither an MCAP file nor a sqlite3 bag; decompress a .zstd bag first",
-        )
+        remedy = "is neither an MCAP file nor a sqlite3 bag; decompress a .zstd bag first"
+        raise InputError(part.name, "", None, remedy)
     try:
         with contextlib.closing(
             sqlite3.connect(f"{part.resolve().as_uri()}?mode=ro", uri=True)

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
+from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers.source import beside, joint_names, made_log
 from hyperleg_design.gap.logs.readers.timebase import onto, sorted_stream
@@ -69,12 +70,8 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
         (folder / JOINTS).read_text(encoding="utf-8").split() if (folder / JOINTS).is_file() else []
     )
     if listed and len(listed) != width:
-        raise InputError(
-            f"{folder.name}/{JOINTS}",
-            "",
-            len(listed),
-            f"expects {width} names, as many as {STATE} has values",
-        )
+        remedy = f"expects {width} names, as many as {STATE} has values"
+        raise InputError(f"{folder.name}/{JOINTS}", "", len(listed), remedy)
     joints = joint_names(said, listed or [f"joint_{i}" for i in range(width)], folder.name)
     remarks = [] if listed else ["the source names no joints: joint_0, joint_1, ... in its order"]
     scale, found = np.ones(width), {}
@@ -92,32 +89,23 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
             )
     elif "gains" not in said:
         remarks.append("the source lacks the controller's gains; say `gains` in a side file")
-    signals = {
-        f"position/{joint}": state["positions"][:, i] * scale[i] for i, joint in enumerate(joints)
-    }
+    signals = columns_of({"position": state["positions"] * scale}, joints)
     if "velocities" in state:
-        signals |= {
-            f"velocity/{joint}": state["velocities"][:, i] for i, joint in enumerate(joints)
-        }
+        signals |= columns_of({"velocity": state["velocities"]}, joints)
     if "torques" in state:
         torque = state["torques"]
         if np.nanmin(torque) < 0:
-            signals |= {f"joint_torque/{joint}": torque[:, i] for i, joint in enumerate(joints)}
+            signals |= columns_of({"joint_torque": torque}, joints)
         else:
             remarks.append("torques have no sign (the size of a current) and were left out")
     if (folder / CONTROL).is_file():
         own, control = _table(folder / CONTROL, ("positions",))
         if control["positions"].shape[1] != width:
+            remedy = f"expects {width} values, as {STATE}"
             raise InputError(
-                f"{folder.name}/{CONTROL}",
-                "positions",
-                control["positions"].shape[1],
-                f"expects {width} values, as {STATE}",
+                f"{folder.name}/{CONTROL}", "positions", control["positions"].shape[1], remedy
             )
-        targets = {
-            f"position_target/{joint}": control["positions"][:, i] * scale[i]
-            for i, joint in enumerate(joints)
-        }
+        targets = columns_of({"position_target": control["positions"] * scale}, joints)
         if len(own) == len(time) and np.array_equal(own, time):
             signals |= targets
         else:
@@ -163,12 +151,8 @@ def _table(path: Path, lists: tuple[str, ...]) -> tuple[np.ndarray, dict[str, np
 
     where = f"{path.parent.name}/{path.name}"
     if not path.is_file():
-        raise InputError(
-            where,
-            "",
-            None,
-            f"is missing: a recording is a folder with {STATE}, {CONTROL} and {JOINTS}",
-        )
+        remedy = f"is missing: a recording is a folder with {STATE}, {CONTROL} and {JOINTS}"
+        raise InputError(where, "", None, remedy)
     try:
         table = pd.read_csv(path)
     except (ValueError, pd.errors.ParserError, OSError) as error:
@@ -198,11 +182,7 @@ def _rows(texts: list[Any], where: str, column: str) -> np.ndarray:
                 where, f"{column}, row {number}", text, "expects a list of numbers, [0.1, 0.2]"
             ) from None
         if rows and len(row) != len(rows[0]):
-            raise InputError(
-                where,
-                f"{column}, row {number}",
-                len(row),
-                f"expects {len(rows[0])} values, as in the first row",
-            )
+            remedy = f"expects {len(rows[0])} values, as in the first row"
+            raise InputError(where, f"{column}, row {number}", len(row), remedy)
         rows.append(row)
     return np.array(rows, float)

@@ -4,7 +4,7 @@ zero.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,8 @@ from hyperleg_design.gap.logs.metadata import Metadata, metadata_from_mapping, r
 
 FOLDER_FILE = "hyperleg.json"
 """Side file inside a folder that is one recording."""
+WANTED = {"position_target": "targets", "velocity": "velocities", "joint_torque": "torques"}
+"""Signals of joints that a diagnosis wants beside positions."""
 LATEST_START = 1e6
 """Clocks that start later count from the epoch and are shifted to start at zero [s]."""
 
@@ -70,15 +72,23 @@ def joint_names(said: Mapping[str, Any], found: list[str], where: str) -> list[s
         or len(names) != len(found)
         or not all(isinstance(n, str) for n in names)
     ):
-        raise InputError(
-            where,
-            "joints",
-            names,
-            f"expects a list of {len(found)} names, in the order of the source",
-        )
+        remedy = f"expects a list of {len(found)} names, in the order of the source"
+        raise InputError(where, "joints", names, remedy)
     if len(set(names)) != len(names):
         raise InputError(where, "joints", names, "expects different names")
     return list(names)
+
+
+def lacks(signals: Set[str]) -> list[str]:
+    """Name what a source of joints lacks, for its remarks.
+
+    Args:
+        signals: that it has.
+
+    Returns:
+        Their names in the plural.
+    """
+    return [name for signal, name in WANTED.items() if signal not in signals]
 
 
 def made_log(

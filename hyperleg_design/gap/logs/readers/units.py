@@ -71,10 +71,6 @@ def factor(column: str, given: str, where: str) -> float:
         return 1.0
     found = known.get(given.strip().lower().replace(" ", ""))
     if found is None:
-        raise InputError(
-            where,
-            column,
-            given,
-            f"is no unit of this signal; there are {', '.join(k for k in known if k)}",
-        )
+        remedy = f"is no unit of this signal; there are {', '.join(k for k in known if k)}"
+        raise InputError(where, column, given, remedy)
     return found

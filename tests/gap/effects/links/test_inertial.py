@@ -10,12 +10,13 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
+from pinocchio_tree import pinocchio_model
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.effects.links.inertial import carried_mass
 from hyperleg_design.gap.effects.links.payload import FAR, NEAR
-from hyperleg_design.gap.model.mechanism import mechanism_of, pinocchio_model
+from hyperleg_design.gap.model.mechanism import mechanism_of
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.simulation.alteration import edited

@@ -7,11 +7,11 @@ import numpy as np
 import pinocchio as pin
 import pytest
 import robots
+from pinocchio_tree import pinocchio_model
 from random_motion import random_motion
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import EFFECTS, UNLISTED, WEIGHED
-from hyperleg_design.gap.model.mechanism import pinocchio_model
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.signals.loading import load_subject
 
