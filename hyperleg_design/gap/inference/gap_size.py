@@ -153,8 +153,8 @@ def mean_squares(evidence: Evidence, values: np.ndarray) -> np.ndarray:
     """
     square = (values * evidence.weight) ** 2
     own = [channel.under_test for channel in evidence.channels]
-    counts = [max(float(evidence.samples.share[one].sum()), 1e-300) for one in own]
-    return np.array([float(square[one].sum()) for one in own]) / np.array(counts)
+    counts = [max(float(evidence.samples.share[where].sum()), 1e-300) for where in own]
+    return np.array([float(square[where].sum()) for where in own]) / np.array(counts)
 
 
 def _lowest_squares(

@@ -69,17 +69,17 @@ class HypothesisFit:
     def nothing(self) -> Hypothesis:
         """No cause: noise and discrepancy alone."""
         channels, rules = self.evidence.channels, self.rules
-        made = screen.spread(
+        scales = screen.spread(
             lambda one: fitted(one, one.start(rules), rules), channels, self.threads
         )
         prior = float(np.log(1 - rules.cause.probability))
-        return Hypothesis((), np.zeros(0), np.zeros((0, 0)), tuple(made), 0.0, prior)
+        return Hypothesis((), np.zeros(0), np.zeros((0, 0)), tuple(scales), 0.0, prior)
 
     @cached_property
     def ground(self) -> np.ndarray:
         """Log posterior of each channel without any cause `(channels,)` [nat]."""
         channels = zip(self.evidence.channels, self.nothing.scales, strict=True)
-        return np.array([one.log_posterior(scales, self.rules) for one, scales in channels])
+        return np.array([each.log_posterior(scales, self.rules) for each, scales in channels])
 
     def candidate(self, promise: Promise, current: Hypothesis) -> Candidate | None:
         """An effect linearised where it fits best, by Gauss-Newton steps at fixed scales."""
@@ -217,8 +217,8 @@ class HypothesisFit:
             sweeps, steps = (2, STEPS) if turn == 0 else (1, STEPS[-1:])
             each = zip(channels, found, left, crossing.shown, strict=True)
             found = [
-                fitted(one, own, self.rules, rest, sweeps, steps) if len(seen) else own
-                for one, own, rest, seen in each
+                fitted(channel, own, self.rules, rest, sweeps, steps) if len(seen) else own
+                for channel, own, rest, seen in each
             ]
             before, solution = solution.theta, self.at_scales(stack, crossing, found)
             deviation = np.sqrt(np.maximum(np.diag(solution.covariance), 1e-300))

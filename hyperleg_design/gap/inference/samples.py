@@ -107,7 +107,7 @@ def gather(
     deal = _parts(filtered_logs)
     groups: dict[tuple[int, int], int] = {}
     chunks = [(log, chunk) for log, count in enumerate(deal) for chunk in range(count)]
-    parts = {one: i for i, one in enumerate(chunks)}
+    parts = {chunk: i for i, chunk in enumerate(chunks)}
     table: list[list[np.ndarray]] = [[] for _ in range(7)]
     where, start, blocks = [], 0, 0
     for number, filtered_log in enumerate(filtered_logs):
@@ -125,8 +125,8 @@ def gather(
             values = filtered_log.sample(place, residual[None])[0]
             block = blocks + (time / BLOCK).astype(int)
             labels = np.full(len(band), overall), group, part, block
-            found = values, floors[number][place], share * information, *labels
-            for column, own in zip(table, found, strict=True):
+            columns = values, floors[number][place], share * information, *labels
+            for column, own in zip(table, columns, strict=True):
                 column.append(own)
             places.append(slice(start, start + len(band)))
             start += len(band)

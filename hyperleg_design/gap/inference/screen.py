@@ -93,7 +93,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         columns[some] = (found[:-1] - found[-1]) / divide[some, None]
         constant = found[-1] - ((values - nulls) / usual) @ columns
     payload = subject.declared.payload
-    masses = (float(payload[one][0]) for one in payload if _same_place(subject, one, location))
+    masses = (float(payload[at][0]) for at in payload if _same_place(subject, at, location))
     declared = max(masses, default=0.0)
     scaled = factor(samples, effect.identifier, location, usual, values)
     unseen = bool(effect.driver) and all(

@@ -175,8 +175,8 @@ class _Answer:
             clear = np.abs(values - cause.nulls) / np.maximum(deviation, 1e-300)
             stands = float(np.max(np.where(cause.shape, 0.0, clear)))
             closed = self.closed_by(hypothesis, place)
-            told = intervals(cause, values, deviation, subject)
-            found.append((stands, Named(cause.effect, cause.location, probability, closed, told)))
+            sizes = intervals(cause, values, deviation, subject)
+            found.append((stands, Named(cause.effect, cause.location, probability, closed, sizes)))
         clear_ones = [named for stands, named in found if stands >= CLEAR]
         return clear_ones or [max(found, key=lambda one: one[0])[1]]
 
@@ -265,26 +265,26 @@ class _Answer:
         left = np.maximum(self.size.after - self.size.noise, 0.0)
         found = []
         for joint, frequency in self.cycling.items():
-            says = (
+            text = (
                 f"swings to and fro at {frequency:.0f} Hz (or a frequency that the log's rate "
                 f"folds there), which nothing commands: its control loop is on the edge of "
                 f"stability"
             )
-            found.append(residual_shape("limit cycle", joint, says, 0.0))
+            found.append(residual_shape("limit cycle", joint, text, 0.0))
         remainder = self.posterior.remainder
-        for cause, says in self.odd():
+        for cause, text in self.odd():
             if not cause.standing:
-                found.append(residual_shape(cause.effect, cause.location, says, remainder))
+                found.append(residual_shape(cause.effect, cause.location, text, remainder))
         for place in np.argsort(-left, kind="stable").tolist()[:3]:
             if left[place] <= 0 or self.posterior.remainder <= 0:
                 continue
             one = self.evidence.channels[place]
-            says = (
+            text = (
                 f"the {one.residual} residual of {one.name} is left larger or of another shape "
                 f"than a healthy robot's, and no listed effect says why"
             )
             share = float(left[place] / max(left.sum(), 1e-300))
-            found.append(residual_shape("unlisted", one.name, says, share))
+            found.append(residual_shape("unlisted", one.name, text, share))
         return tuple(found)
 
     def remarks(self, checks: Sequence[Check]) -> tuple[str, ...]:

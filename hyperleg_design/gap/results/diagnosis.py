@@ -108,8 +108,8 @@ def residual_shape(shape: str, location: str, says: str, closed_beyond: float) -
     Returns:
         Its fields.
     """
-    told = {"shape": shape, "location": location, "says": says, "closed_beyond": closed_beyond}
-    return told | {"gain": 0.0}
+    entry = {"shape": shape, "location": location, "says": says, "closed_beyond": closed_beyond}
+    return entry | {"gain": 0.0}
 
 
 @dataclass(frozen=True)

@@ -34,9 +34,11 @@ class ModelledFriction(JointTorque):
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
         """A share of the model's friction, and of what the joint is made for."""
         size = np.eye(len(self.parameters))[0]
-        made = super().nuisance_spreads(subject, step).items()
+        usual = super().nuisance_spreads(subject, step).items()
         own = self.model_spread * self.modelled(subject)
-        return {joint: share * size + one for (joint, one), share in zip(made, own, strict=True)}
+        return {
+            joint: share * size + least for (joint, least), share in zip(usual, own, strict=True)
+        }
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:

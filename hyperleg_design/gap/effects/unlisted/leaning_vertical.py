@@ -69,7 +69,7 @@ class LeaningVertical(Effect):
         rest = np.zeros_like(signals.position)
         motion = signals.position, rest, rest
         leaning = (replace(signals.subject, gravity=g) for g in _across(signals.subject.gravity))
-        needed = np.stack([inverse_dynamics(one, *motion, rotors=False) for one in leaning])
+        needed = np.stack([inverse_dynamics(s, *motion, rotors=False) for s in leaning])
         return {"motion": np.tensordot(np.atleast_2d(values), needed, 1)}
 
     @override
