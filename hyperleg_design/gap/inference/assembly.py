@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import WEIGHED
@@ -102,7 +103,9 @@ class _Set:
     floors: list[list[np.ndarray]]
     """Expected noise of each log and row."""
     errors: np.ndarray
-    """Columns of the nuisance parameters `(p, S)`."""
+    """Columns of the nuisance parameters, steady ones first `(p, S)`."""
+    steady: int
+    """Number of nuisance parameters that are the same in all sessions."""
     tested: bool
 
     def row(self, key: tuple[str, int]) -> int | None:
@@ -152,6 +155,7 @@ def evidence_of(
     """
     subject = tests[0].subject
     errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references))
+    errors.sort(key=lambda one: not one.steady)
     sets = [_set(tests, errors, rules, tested=True)]
     if not len(sets[0].samples.value):
         raise InputError(
@@ -213,7 +217,8 @@ def _set(
     for filtered, places in zip(filtered_logs, samples.where, strict=True):
         for row, found in nuisance_traces.columns(filtered, errors).items():
             columns[:, places[row]] = found
-    return _Set(filtered_logs, samples, floors, columns, tested)
+    steady = sum(one.steady for one in errors)
+    return _Set(filtered_logs, samples, floors, columns, steady, tested)
 
 
 def _channel(
@@ -257,7 +262,9 @@ def _channel(
             cells.append(((number, s), (number, b), number_of, first + own[mine]))
     sessions = sorted({cell[0] for cell in cells})
     bands = sorted({cell[1] for cell in cells})
-    white = _rotated(white, rules.discrepancy.truncation)
+    white, steady = _rotated(
+        white, sets[0].steady if len(sessions) > 1 else 0, rules.discrepancy.truncation
+    )
     return Channel(
         key[0],
         key[1],
@@ -270,6 +277,7 @@ def _channel(
         np.array([number == 0 for number, _ in sessions]),
         tuple(cell[3] for cell in cells),
         tuple(white),
+        steady,
     ), moved
 
 
@@ -317,13 +325,22 @@ def _feigned(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarra
     return found, clean / max(whole, 1e-300)
 
 
-def _rotated(white: Sequence[np.ndarray], truncation: float) -> list[np.ndarray]:
-    """Columns turned to the directions that the samples show, one of them at least, residual last;
-    all have the same prior, which no rotation changes.
+def _rotated(
+    white: Sequence[np.ndarray], steady: int, truncation: float
+) -> tuple[list[np.ndarray], int]:
+    """Columns turned to the directions that the samples show, residual last: among the first
+    `steady` ones, and among the others, of which one is left at least. Columns of either kind have
+    the same prior, which no rotation changes.
+
+    Returns:
+        By cell, the turned columns, and how many of them are steady.
     """
     total = sum((one[:-1] @ one[:-1].T for one in white), np.zeros(()))
-    values, axes = np.linalg.eigh(total)
-    shown = values > truncation
-    shown[-1] = True
-    axes = axes[:, shown]
-    return [np.concatenate([axes.T @ one[:-1], one[-1:]]) for one in white]
+    turns = []
+    for part in (slice(steady), slice(steady, None)):
+        values, axes = np.linalg.eigh(total[part, part])
+        shown = values > truncation
+        shown[-1:] |= part.stop is None
+        turns.append(axes[:, shown])
+    turn = block_diag(*turns).T
+    return [np.concatenate([turn @ one[:-1], one[-1:]]) for one in white], turns[0].shape[1]

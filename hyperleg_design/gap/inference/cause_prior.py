@@ -106,7 +106,7 @@ def usual_error(
 ) -> float:
     """Size up to which a parameter of an effect is a usual calibration error: `CauseRules.usual`
     deviations; of one that changed since the references, as far as such errors change from session
-    to session.
+    to session, steady ones not at all.
 
     Args:
         evidence: channels.
@@ -117,5 +117,7 @@ def usual_error(
     Returns:
         The size, in the parameter's unit; 0 where no error is usual.
     """
-    share = rules.discrepancy.change if evidence.references and not standing else 1.0
+    share = 1.0
+    if evidence.references and not standing:
+        share = 0.0 if WEIGHED[parameter[0]].steady else rules.discrepancy.change
     return share * rules.cause.usual * evidence.usual.get(parameter, 0.0)

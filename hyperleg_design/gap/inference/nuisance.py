@@ -69,6 +69,11 @@ class NuisanceParameter:
     """Standard deviation from the null, in the parameter's unit."""
 
     @property
+    def steady(self) -> bool:
+        """Whether it is the same in all sessions, see `Effect.steady`."""
+        return self.effect in EFFECTS and EFFECTS[self.effect].steady
+
+    @property
     def name(self) -> str:
         """Parameter and place in words, for reports."""
         if self.effect in UNLISTED:

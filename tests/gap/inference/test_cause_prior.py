@@ -89,6 +89,13 @@ def test_a_change_is_no_fault_where_calibration_changes_as_much(references, stan
         assert np.exp(beyond_usual(hypothesis, 0, evidence, RULES)) == pytest.approx(chance)
 
 
+def test_a_mass_that_changed_since_the_references_is_a_fault_of_any_size():
+    key = "link_mass", "shank", 0
+    evidence = SimpleNamespace(usual={key: 0.1}, references=("a log",))
+    assert usual_error(evidence, RULES, key) == 0.0
+    assert usual_error(evidence, RULES, key, standing=True) == pytest.approx(0.3)
+
+
 def test_an_effect_that_no_calibration_error_is_like_is_a_fault_of_any_size():
     evidence = SimpleNamespace(usual={}, references=())
     assert usual_error(evidence, RULES, ("backlash", "hip", 0)) == 0.0

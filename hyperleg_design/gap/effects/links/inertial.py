@@ -41,6 +41,7 @@ class InertialEffect(Effect):
 
     kind: ClassVar[str] = "link"
     needs: ClassVar[Need] = SWINGING
+    steady: ClassVar[bool] = True
 
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:

@@ -4,12 +4,13 @@ A channel is one row of a residual (the torque of one joint, say) in all logs. I
 session s, over their expected noise, are
 
     y_s = x_s theta + C_s (w + delta_s) + e_s,
-    w ~ N(0, a^2 I),   delta_s ~ N(0, d_s^2 I),   e_s ~ N(0, diag(noise of the band)),
+    w ~ N(0, a^2 I),   delta_s ~ N(0, d_s^2 J),   e_s ~ N(0, diag(noise of the band)),
 
 with causes x theta, discrepancy columns C in units of their prior deviations, a standing
-discrepancy w that all sessions share, and its change delta_s in one session. A session under test
-may have a larger change than its reference logs (`new`): that is an unlisted effect. Only sums of
-products of C, y and x are needed, so that the cost does not depend on the length of the logs.
+discrepancy w that all sessions share, and its change delta_s in one session, 0 of steady columns,
+for which the diagonal of J is 0, not 1. A session under test may have a larger change than its
+reference logs (`new`): that is an unlisted effect. Only sums of products of C, y and x are needed,
+so that the cost does not depend on the length of the logs.
 """
 
 from __future__ import annotations
@@ -64,6 +65,8 @@ class Channel:
     """Which of the evidence's samples each cell holds."""
     whitened: tuple[np.ndarray, ...]
     """Discrepancy columns and residual of each cell `(k + 1, samples)`."""
+    steady: int = 0
+    """Number of discrepancy columns, the first ones, that are the same in all sessions."""
 
     @property
     def columns(self) -> int:
@@ -249,13 +252,13 @@ class Channel:
     def _spectra(self) -> Callable[[bytes], Spectrum]:
         """Spectra at the noise that some bytes hold."""
         products = np.ascontiguousarray(self.products[:, :-1, :-1])
-        tested, band = self.tested, self.band
+        tested, band, steady = self.tested, self.band, self.steady
         sessions = self.session == np.arange(len(tested))[:, None]
 
         @lru_cache(maxsize=NOISES)
         def spectrum(noise: bytes) -> Spectrum:
             share = sessions / np.frombuffer(noise)[band]
-            return Spectrum(np.tensordot(share, products, 1), tested)
+            return Spectrum(np.tensordot(share, products, 1), tested, steady)
 
         return spectrum
 
@@ -305,13 +308,14 @@ class Channel:
             cross: products of the discrepancy columns with m others `(cells, k, m)`.
 
         Returns:
-            `((sessions + 1) k, m)`.
+            `(sessions (k - steady) + k, m)`.
         """
         spectrum, change = self.spectrum(scales.noise), self.change_scales(scales)
-        turned, shrunk = spectrum.turned(self._summed(scales.noise, cross)), spectrum.shrunk(change)
+        cross = self._summed(scales.noise, cross)
+        turned, shrunk = spectrum.turned(cross), spectrum.shrunk(change)
         shared, _ = dtrtrs(
             spectrum.factor(change, scales.standing),
-            np.exp(scales.standing) * (spectrum.axes @ (shrunk[:, :, None] * turned)).sum(0),
+            np.exp(scales.standing) * spectrum.left(change, cross, turned),
             lower=1,
         )
         alone = (change[:, None] * np.sqrt(shrunk))[:, :, None] * turned
@@ -326,7 +330,7 @@ class Channel:
         """
         residual = self.whole_residual if residual is None else residual
         spectrum = self.spectrum(noise)
-        cross = spectrum.turned(self._summed(noise, residual.cross)[:, :, None])[:, :, 0]
+        cross = self._summed(noise, residual.cross)[:, :, None]
         square = float(residual.square @ (1 / noise[self.band]))
         return Likelihood(spectrum, cross, square, float(self.numbers @ np.log(noise)))
 
@@ -372,15 +376,19 @@ class Channel:
         """
         residual = self.whole_residual if residual is None else residual
         spectrum, change = self.spectrum(scales.noise), self.change_scales(scales)
-        axes, shrunk = spectrum.axes, spectrum.shrunk(change)
-        turned = spectrum.turned(self._summed(scales.noise, residual.cross)[:, :, None])[:, :, 0]
-        target = (axes @ (shrunk * turned)[:, :, None])[:, :, 0].sum(0)
+        axes, own = spectrum.axes, slice(self.steady, None)
+        cross = self._summed(scales.noise, residual.cross)[:, :, None]
+        turned = spectrum.turned(cross)
         inverse = np.linalg.inv(spectrum.factor(change, scales.standing))
         shared = np.exp(2 * scales.standing) * (inverse.T @ inverse)
-        mean = shared @ target
-        beyond = turned - spectrum.values * (mean @ axes)
-        squares = change[:, None] ** 2 * shrunk
-        means = mean + (axes @ (squares * beyond)[:, :, None])[:, :, 0]
-        # with A = (I + c^2 O)^-1, the covariance is c^2 A + A shared A
-        kept = (axes * shrunk[:, None, :]) @ axes.swapaxes(1, 2)
-        return means, (change**2)[:, None, None] * kept + kept @ shared @ kept
+        mean = shared @ spectrum.left(change, cross, turned)
+        across = spectrum.beside.swapaxes(1, 2)
+        gained = axes * (change[:, None] ** 2 * spectrum.shrunk(change))[:, None, :]
+        means = np.repeat(mean.T, len(change), 0)
+        means[:, own] += (gained @ (turned - across @ mean))[:, :, 0]
+        # the covariance of w + delta is that of the change, given w, and of what w alone moves
+        kept = np.repeat(np.eye(self.columns)[None], len(change), 0)
+        kept[:, own] -= gained @ across
+        covariances = kept @ shared @ kept.swapaxes(1, 2)
+        covariances[:, own, own] += gained @ axes.swapaxes(1, 2)
+        return means, covariances

@@ -16,7 +16,7 @@ class Likelihood:
 
     spectrum: Spectrum
     cross: np.ndarray
-    """Products of the residual with each session's columns along their axes `(sessions, k)`."""
+    """Products of the residual with each session's columns `(sessions, k, 1)`."""
     square: float
     """Of the residual with itself, all sessions."""
     spread: float
@@ -33,9 +33,9 @@ class Likelihood:
         """
         key = change.tobytes()
         if key not in self._parts:
-            shrunk = self.spectrum.shrunk(change)
-            cross = (self.spectrum.axes @ (shrunk * self.cross)[:, :, None]).sum(0)[:, 0]
-            alone = float(np.sum(change[:, None] ** 2 * shrunk * self.cross**2))
+            shrunk, turned = self.spectrum.shrunk(change), self.spectrum.turned(self.cross)
+            cross = self.spectrum.left(change, self.cross, turned)[:, 0]
+            alone = float(np.sum(change[:, None] ** 2 * shrunk * turned[:, :, 0] ** 2))
             self._parts[key] = cross, self.square - alone - float(np.log(shrunk).sum())
         cross, rest = self._parts[key]
         factor = self.spectrum.factor(change, standing)

@@ -14,42 +14,61 @@ REMEMBERED = 4
 
 
 class Spectrum:
-    """Eigenvalues and axes of the columns' products with themselves, O = U diag(v) U', by session.
+    """Products O of the columns with themselves, by session, with the change integrated out.
 
-    With the change of scale c integrated out, the products of a session become
-    O (I + c^2 O)^-1 = U diag(v / (1 + c^2 v)) U'.
+    Only the columns after the first `steady` ones change from session to session. With
+    O' = U diag(v) U' for the products of these, and B = O U for those of all with them, a change of
+    scale c leaves of the products of a session O - B diag(c^2 / (1 + c^2 v)) B'.
 
     Args:
         products: of the columns with themselves over the noise `(sessions, k, k)`.
         tested: whether a session is under test; all sessions that are, and all that are not, have
             the same scale of the change `(sessions,)`.
+        steady: number of columns that do not change.
     """
 
-    def __init__(self, products: np.ndarray, tested: np.ndarray) -> None:
-        values, self.axes = np.linalg.eigh(products)
-        self.values = np.maximum(values, 0.0)
-        alike = [np.flatnonzero(tested == which) for which in (False, True)]
+    def __init__(self, products: np.ndarray, tested: np.ndarray, steady: int = 0) -> None:
+        values, self.axes = np.linalg.eigh(products[:, steady:, steady:])
+        self.steady, self.values = steady, np.maximum(values, 0.0)
+        self.beside = products[:, :, steady:] @ self.axes
+        self._whole = products.sum(0)
         self._groups = [
-            (int(own[0]), _grams(self.values[own], self.axes[own])) for own in alike if len(own)
+            (int(own[0]), _grams(self.values[own], self.beside[own]))
+            for own in (np.flatnonzero(tested == which) for which in (False, True))
+            if len(own)
         ]
         self._factor: tuple[tuple[bytes, float], np.ndarray] | None = None
 
     def shrunk(self, change: np.ndarray) -> np.ndarray:
-        """1 / (1 + c^2 v) `(sessions, k)`.
+        """1 / (1 + c^2 v) `(sessions, k - steady)`.
 
         Args:
             change: scale of the change of each session `(sessions,)`.
         """
         return np.asarray(1 / (1 + change[:, None] ** 2 * self.values))
 
+    def left(self, change: np.ndarray, cross: np.ndarray, turned: np.ndarray) -> np.ndarray:
+        """Products of the columns with others that the change leaves, summed over the sessions
+        `(k, m)`.
+
+        Args:
+            change: scale of the change of each session `(sessions,)`.
+            cross: products by session `(sessions, k, m)`.
+            turned: the same along the axes `(sessions, k - steady, m)`.
+        """
+        taken = (change[:, None] ** 2 * self.shrunk(change))[:, :, None] * turned
+        return np.asarray((cross - self.beside @ taken).sum(0))
+
     def gram(self, change: np.ndarray) -> np.ndarray:
-        """Sum over the sessions of O (I + c^2 O)^-1 `(k, k)`.
+        """Products of the columns with themselves that the change leaves, summed over the sessions
+        `(k, k)`.
 
         Args:
             change: scale of the change of each session `(sessions,)`.
         """
-        parts = [gram(float(change[first])) for first, gram in self._groups]
-        return np.asarray(sum(parts[1:], parts[0]))
+        return np.asarray(
+            self._whole - sum(gram(float(change[first])) for first, gram in self._groups)
+        )
 
     def factor(self, change: np.ndarray, standing: float) -> np.ndarray:
         """Lower Cholesky factor of I + a^2 `gram` `(k, k)`.
@@ -69,21 +88,24 @@ class Spectrum:
         return factor
 
     def turned(self, cross: np.ndarray) -> np.ndarray:
-        """Products of each session's columns with others, along the axes `(sessions, k, m)`.
+        """Products of each session's changing columns with others, along the axes
+        `(sessions, k - steady, m)`.
 
         Args:
-            cross: `(sessions, k, m)`.
+            cross: of all columns `(sessions, k, m)`.
         """
-        return np.asarray(self.axes.swapaxes(1, 2) @ cross)
+        return np.asarray(self.axes.swapaxes(1, 2) @ cross[:, self.steady :])
 
 
-def _grams(values: np.ndarray, axes: np.ndarray) -> Callable[[float], np.ndarray]:
-    """`Spectrum.gram` of sessions with one scale of the change, a function of that scale."""
-    k = axes.shape[1]
-    flat, side = values.ravel(), np.ascontiguousarray(axes.swapaxes(0, 1)).reshape(k, -1)
+def _grams(values: np.ndarray, beside: np.ndarray) -> Callable[[float], np.ndarray]:
+    """What a change takes of `Spectrum.gram`, of sessions with one scale of it: a function of that
+    scale.
+    """
+    flat = values.ravel()
+    side = np.ascontiguousarray(beside.swapaxes(0, 1)).reshape(beside.shape[1], -1)
 
     @lru_cache(maxsize=REMEMBERED)
     def gram(change: float) -> np.ndarray:
-        return np.asarray((side * (flat / (1 + change**2 * flat))) @ side.T)
+        return np.asarray((side * (change**2 / (1 + change**2 * flat))) @ side.T)
 
     return gram

@@ -16,7 +16,12 @@ RULES = InferenceRules()
 
 
 def made(
-    rng: np.random.Generator, sessions: int = 3, tested: int = 1, count: int = 40, k: int = 4
+    rng: np.random.Generator,
+    sessions: int = 3,
+    tested: int = 1,
+    count: int = 40,
+    k: int = 4,
+    steady: int = 0,
 ) -> tuple[Channel, list[np.ndarray]]:
     """A channel with two bands a session, and its whitened columns (residual last)."""
     white, session, band, places, start = [], [], [], [], 0
@@ -39,6 +44,7 @@ def made(
         np.arange(sessions) < tested,
         tuple(places),
         tuple(white),
+        steady,
     )
     return channel, white
 
@@ -51,10 +57,10 @@ def dense(channel: Channel, scales: Scales) -> np.ndarray:
     found = np.zeros((ends[-1], ends[-1]))
     for i, one in enumerate(channel.whitened):
         for j, other in enumerate(channel.whitened):
-            shared = np.exp(2 * scales.standing)
+            shared = np.full(channel.columns, np.exp(2 * scales.standing))
             if channel.session[i] == channel.session[j]:
-                shared += change[channel.session[i]]
-            block = shared * one[:-1].T @ other[:-1]
+                shared[channel.steady :] += change[channel.session[i]]
+            block = (shared[:, None] * one[:-1]).T @ other[:-1]
             if i == j:
                 block = block + np.eye(sizes[i]) * scales.noise[channel.band[i]]
             found[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = block
@@ -64,9 +70,10 @@ def dense(channel: Channel, scales: Scales) -> np.ndarray:
 SCALES = Scales(np.array([0.7, 1.9, 1.2, 0.4]), np.log(0.8), np.log(0.5), np.log(3.0))
 
 
+@pytest.mark.parametrize("steady", [0, 2, 4])
 @pytest.mark.parametrize(("sessions", "tested"), [(1, 1), (2, 2), (3, 1), (4, 2)])
-def test_marginal_likelihood_is_that_of_the_normal_distribution(sessions, tested):
-    channel, white = made(np.random.default_rng(sessions), sessions, tested)
+def test_marginal_likelihood_is_that_of_the_normal_distribution(sessions, tested, steady):
+    channel, white = made(np.random.default_rng(sessions), sessions, tested, steady=steady)
     scales = replace(SCALES, noise=SCALES.noise[: len(channel.numbers)])
     value = np.concatenate([one[-1] for one in white])
     covariance = dense(channel, scales)
@@ -75,9 +82,10 @@ def test_marginal_likelihood_is_that_of_the_normal_distribution(sessions, tested
     assert channel.log_likelihood(scales) == pytest.approx(expected, rel=1e-9)
 
 
-def test_reduced_products_are_those_in_the_metric_of_the_covariance():
+@pytest.mark.parametrize("steady", [0, 3])
+def test_reduced_products_are_those_in_the_metric_of_the_covariance(steady):
     rng = np.random.default_rng(5)
-    channel, white = made(rng)
+    channel, white = made(rng, steady=steady)
     columns = rng.standard_normal((3, len(channel.samples)))
     left = channel.reduced(SCALES, *channel.crossed(columns))
     total = sum(one.shape[1] for one in white)
@@ -88,8 +96,9 @@ def test_reduced_products_are_those_in_the_metric_of_the_covariance():
     np.testing.assert_allclose(left, expected, rtol=1e-8, atol=1e-9)
 
 
-def test_posterior_of_the_discrepancy_is_that_of_the_normal_equations():
-    channel, white = made(np.random.default_rng(8))
+@pytest.mark.parametrize("steady", [0, 1])
+def test_posterior_of_the_discrepancy_is_that_of_the_normal_equations(steady):
+    channel, white = made(np.random.default_rng(8), steady=steady)
     means, covariances = channel.discrepancy(SCALES)
     k, sessions = channel.columns, len(channel.tested)
     change = channel.change_scales(SCALES) ** 2
@@ -98,7 +107,7 @@ def test_posterior_of_the_discrepancy_is_that_of_the_normal_equations():
     right = np.zeros(len(precision))
     for s in range(sessions):
         own = slice(k * (1 + s), k * (2 + s))
-        precision[own, own] = np.eye(k) / change[s]
+        precision[own, own] = np.diag(np.where(np.arange(k) < steady, 1e12, 1 / change[s]))
     for cell, one in enumerate(white):
         s, noise = channel.session[cell], SCALES.noise[channel.band[cell]]
         both = np.r_[0:k, k * (1 + s) : k * (2 + s)]

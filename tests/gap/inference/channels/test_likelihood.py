@@ -28,7 +28,7 @@ def values():
 def likelihood(columns, values, tested=TESTED):
     """Of sessions with one noise."""
     spectrum = Spectrum(columns @ columns.swapaxes(1, 2) / NOISE, tested)
-    cross = spectrum.turned(columns @ values[:, :, None] / NOISE)[:, :, 0]
+    cross = columns @ values[:, :, None] / NOISE
     square, spread = float(np.sum(values**2)) / NOISE, values.size * np.log(NOISE)
     return Likelihood(spectrum, cross, square, spread)
 

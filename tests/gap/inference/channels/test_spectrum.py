@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from hyperleg_design.gap.inference.channels.spectrum import Spectrum
 
 
-def test_what_is_left_of_the_products_is_that_of_the_inverse():
+@pytest.mark.parametrize("steady", [0, 2])
+def test_what_is_left_of_the_products_is_that_of_the_inverse(steady):
     rng = np.random.default_rng(3)
     roots = rng.standard_normal((3, 5, 4))
     products = roots @ roots.swapaxes(1, 2)
     tested = np.array([True, False, False])
-    spectrum = Spectrum(products, tested)
+    spectrum = Spectrum(products, tested, steady)
+    changing = np.diag(np.arange(5) >= steady).astype(float)
+    cross = rng.standard_normal((3, 5, 2))
     for new in (1.0, 3.0):
         change = np.where(tested, 0.4 * new, 0.4)
-        inverse = np.linalg.inv(np.eye(5) + change[:, None, None] ** 2 * products)
-        expected = (products @ inverse).sum(0)
+        inverse = np.linalg.inv(np.eye(5) + products @ (change[:, None, None] ** 2 * changing))
+        expected = (inverse @ products).sum(0)
         np.testing.assert_allclose(spectrum.gram(change), expected, atol=1e-10)
         factor = spectrum.factor(change, np.log(0.7))
         np.testing.assert_allclose(factor @ factor.T, np.eye(5) + 0.49 * expected, atol=1e-10)
-        kept = (spectrum.axes * spectrum.shrunk(change)[:, None, :]) @ spectrum.axes.swapaxes(1, 2)
-        np.testing.assert_allclose(kept, inverse, atol=1e-10)
+        left = spectrum.left(change, cross, spectrum.turned(cross))
+        np.testing.assert_allclose(left, (inverse @ cross).sum(0), atol=1e-10)
