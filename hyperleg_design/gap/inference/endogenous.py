@@ -74,17 +74,19 @@ def joined(
     """
     found: list[tuple[list[int], Factor | Shrinking]] = []
     same: dict[int, list[tuple[int, Factor]]] = {}
-    for place, one in factors:
-        if isinstance(one, Factor):
-            same.setdefault(one.row, []).append((place, one))
+    for place, term in factors:
+        if isinstance(term, Factor):
+            same.setdefault(term.row, []).append((place, term))
         else:
-            found.append(([place], one))
+            found.append(([place], term))
     for own in same.values():
-        each = [one for _, one in own]
-        longest = max(each, key=lambda one: (one.slope.shape[1], one.number))
+        terms = [term for _, term in own]
+        longest = max(terms, key=lambda term: (term.slope.shape[1], term.number))
         ticks = longest.slope.shape[1]  # logs under test come first in all of them
-        slope = [np.pad(one.slope, ((0, 0), (0, ticks - one.slope.shape[1]))) for one in each]
-        whole = replace(longest, slope=np.concatenate(slope), shows=min(one.shows for one in each))
+        slope = [np.pad(term.slope, ((0, 0), (0, ticks - term.slope.shape[1]))) for term in terms]
+        whole = replace(
+            longest, slope=np.concatenate(slope), shows=min(term.shows for term in terms)
+        )
         found.append(([place for place, _ in own], whole))
     return found
 
