@@ -31,8 +31,8 @@ class Evidence:
     time: np.ndarray
     """`(t,)` [s]."""
     before: np.ndarray
-    """Residual of the nominal model `(t, r)` [Nm]; NaN where it cannot be told, and where a joint
-    may stick."""
+    """Residual of the nominal model, less what stands in the references, too `(t, r)` [Nm]; NaN
+    where it cannot be told, and where a joint may stick."""
     explained: np.ndarray
     """What the causes leave there `(t, r)` [Nm]."""
     speed: np.ndarray
@@ -55,7 +55,10 @@ class Evidence:
 
 
 def evidence(
-    signals: Signals, causes: Sequence[Mapping[str, Any]], residual_name: str = "motion"
+    signals: Signals,
+    causes: Sequence[Mapping[str, Any]],
+    residual_name: str = "motion",
+    standing: Sequence[Mapping[str, Any]] = (),
 ) -> Evidence:
     """Compute a residual and what causes explain of it, on one log.
 
@@ -64,21 +67,13 @@ def evidence(
         causes: as `diagnosis.json` lists them: `effect`, `location`, and `parameters` with their
             `value`.
         residual_name: one that the log allows.
+        standing: what the references show already, which is taken off the residual.
 
     Returns:
         The residual before and after, and what is explained.
     """
-    residual = signals.residual[residual_name]
-    explained = np.zeros_like(residual)
-    for cause in causes:
-        kind = effect(str(cause["effect"]))
-        told = cause["parameters"]
-        values = np.array(
-            [[float(told[p.name]["value"]) if p.name in told else p.null for p in kind.parameters]]
-        )
-        trace = kind.trace(signals, str(cause["location"]), values).get(residual_name)
-        if trace is not None:
-            explained = explained + trace[0]
+    residual = signals.residual[residual_name] - _explained(signals, standing, residual_name)
+    explained = _explained(signals, causes, residual_name)
     known = np.isfinite(residual) & np.isfinite(explained) & signals.valid[:, None]
     if residual_name == "motion":
         known = moving_ticks(signals, known, sticking(signals))
@@ -92,3 +87,20 @@ def evidence(
     empty = np.where(known, 0.0, np.nan)
     names, before, made = row_names(signals.subject, residual_name), before + empty, made + empty
     return Evidence(signals.log.name, residual_name, names, signals.time, before, made, speed)
+
+
+def _explained(
+    signals: Signals, causes: Sequence[Mapping[str, Any]], residual_name: str
+) -> np.ndarray:
+    """What causes leave in a residual, together `(t, r)`."""
+    explained = np.zeros_like(signals.residual[residual_name])
+    for cause in causes:
+        kind = effect(str(cause["effect"]))
+        told = cause["parameters"]
+        values = np.array(
+            [[float(told[p.name]["value"]) if p.name in told else p.null for p in kind.parameters]]
+        )
+        trace = kind.trace(signals, str(cause["location"]), values).get(residual_name)
+        if trace is not None:
+            explained = explained + trace[0]
+    return explained

@@ -63,11 +63,15 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
     causes, rivals = list(diagnosis["causes"]), list(diagnosis["rivals"])
     verdict = str(diagnosis["verdict"])
     residual_name = _telling_residual(signals, causes)
-    shown = [evidence(log, causes, residual_name) for log in signals]
+    standing = list((diagnosis.get("lacks") or {}).get("causes", ()))
+    shown = [evidence(log, causes, residual_name, standing) for log in signals]
     # joints that stand all the time show nothing
     shown = [part for part in shown if np.isfinite(part.before).any()]
     left = hints(diagnosis.get("residual_shape", ()), shown)
-    first, *others = _traces(folder, shown, bool(causes)) or [[]]
+    what = "what the causes predict and what is left" if causes else "no cause is named"
+    if standing:
+        what = f"beyond what the references show, {what}"
+    first, *others = _traces(folder, shown, what) or [[]]
     page = {
         "title": f"Gap diagnosis of {signals[0].subject.name}" if signals else "Gap diagnosis",
         "verdict": verdict,
@@ -160,14 +164,19 @@ def _brief(rival: Mapping[str, Any]) -> CauseRow:
     return CauseRow(row.effect, row.location, row.values[:1], row.closed, row.probability)
 
 
-def _traces(folder: Path, shown: Sequence[Evidence], explained: bool) -> list[list[Picture]]:
-    """Two pictures a log, over time and over speed; logs where causes show most come first."""
+def _traces(folder: Path, shown: Sequence[Evidence], what: str) -> list[list[Picture]]:
+    """Two pictures a log, over time and over speed; logs where causes show most come first.
+
+    Args:
+        folder: of the page.
+        shown: evidence of the logs.
+        what: the pictures show beside what the model lacks.
+    """
     telling = sorted(
         shown,
         key=lambda part: -float(np.nan_to_num(root_mean_square(part.explained)).max(initial=0.0)),
     )
     figures = []
-    what = "what the causes predict and what is left" if explained else "no cause is named"
     for number, part in enumerate(telling[:MOST_TRACES], 1):
         name = f"{FIGURES}/trace-{number}.png"
         save(gap_figures.time_figure(part), folder / name)

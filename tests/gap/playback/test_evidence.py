@@ -50,6 +50,14 @@ def test_the_true_cause_explains_and_another_does_not(signals: Signals) -> None:
     assert right.worst == 0
 
 
+def test_what_the_references_show_already_is_taken_off(signals: Signals) -> None:
+    nothing, stood = evidence(signals, []), evidence(signals, [], standing=[TRUE])
+    before = root_mean_square(nothing.before)[0]
+    assert root_mean_square(stood.before)[0] < 0.02 * before
+    np.testing.assert_array_equal(stood.after, stood.before)
+    np.testing.assert_allclose(stood.before, evidence(signals, [TRUE]).after, atol=1e-9)
+
+
 def test_the_row_that_is_drawn_is_the_one_that_causes_explain():
     """A larger residual elsewhere is another matter, unless nothing is explained."""
     before = np.tile([3.0, 1.0], (5, 1))
