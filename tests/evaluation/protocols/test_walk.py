@@ -13,7 +13,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import measures, rollout
 from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.motion.steps import foot_contacts
-from hyperleg_design.evaluation.policy import Scripted, standing
+from hyperleg_design.evaluation.policy import standing
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
 from hyperleg_design.evaluation.protocols.walk import measure_walk, walk_task
 from hyperleg_design.simulation.environment import Environment
@@ -23,6 +23,24 @@ from hyperleg_design.simulation.stepping.partition import SMALLEST_SPLIT
 from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.simulation.terms.assist import Assist
 from hyperleg_design.sizing.motions.walk import WalkPlan
+
+
+class Scripted:
+    """Policy that plays a sequence of actions `(steps, J)`, the same in all trials, and holds the
+    last.
+    """
+
+    def __init__(self, actions: np.ndarray) -> None:
+        self.actions, self.step = actions, 0
+
+    def reset(self, trials: int) -> None:
+        self.step = 0
+
+    def __call__(self, observation: np.ndarray) -> np.ndarray:
+        row = self.actions[min(self.step, len(self.actions) - 1)]
+        self.step += 1
+        return np.broadcast_to(row, (len(observation), len(row)))
+
 
 PLAN = WalkPlan()
 SHORT = WalkProtocol(trials=4, time_limit=16.0)
