@@ -26,13 +26,13 @@ class Hooks(Live):
 
 
 class JointHooks(Hooks):
-    """Hooks at one joint."""
+    """Hooks at one joint of the machine."""
 
     kind: ClassVar[str] = "joint"
 
 
 class MotorHooks(Hooks):
-    """Hooks at one motor."""
+    """Hooks at one motor of the machine."""
 
     kind: ClassVar[str] = "motor"
 

@@ -107,7 +107,7 @@ class Search:
         """
         best = current
         for one, rest in zip(current.candidates, self._fewer(current), strict=True):
-            if not one.standing:
+            if not one.standing and one.location != EVERYWHERE:
                 best = self._better(self.further(rest, at=one.location), best)
         return best
 
@@ -132,7 +132,7 @@ class Search:
         Args:
             current: the hypothesis.
             instead: a candidate whose place they are to take: only those that promise more.
-            at: location of those that are tried; all by default.
+            at: location of those that are tried; all by default, and effects at all of theirs.
         """
         rules = self.rules.search
         promises: dict[Name, list[Promise]] = {}
@@ -143,7 +143,7 @@ class Search:
         if not names:
             return []
         gains = {name: promises[name][0].gain for name in names}
-        groups = self.everywhere(promises, current)
+        groups = [] if at else self.everywhere(promises, current)
         gains |= {one.name: gain for gain, one in groups}
         least = rules.least
         if instead is not None:
@@ -160,7 +160,7 @@ class Search:
             self._known((*current.candidates, one))
             or self.fits.fit((*current.candidates, one), current.scales)
             for gain, one in groups[: rules.groups]
-            if gain > least and not at
+            if gain > least
         ]
         return hypotheses
 
