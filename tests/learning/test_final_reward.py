@@ -170,9 +170,9 @@ def test_each_variation_differs_from_the_primary_study_in_one_thing():
 HELPERS = {"flight", "hip_deviation"}
 
 
-def test_every_step_of_the_t_test_has_the_papers_reward_and_marked_terms():
+def test_the_last_third_of_the_t_test_has_the_papers_reward_and_marked_terms():
     preset, task = load_preset("t_test"), load_task("t_test_free")
-    assert final_share(preset.stages("t_test_free")) == 1.0
+    assert final_share(preset.stages("t_test_free")) == pytest.approx(1 / 3)
     final, paper = final_rewards(preset, task), load_task("goal_paper").rewards
     own = {"power", "goal_arrival", "position_progress"}
     assert {n: final[n] for n in own} == {n: paper[n] for n in own}
@@ -181,11 +181,15 @@ def test_every_step_of_the_t_test_has_the_papers_reward_and_marked_terms():
     assert not HELPERS & set(final)
 
 
-def test_the_guided_t_test_ends_with_the_rewards_of_the_t_test_but_for_path_and_falls():
+def test_the_guided_t_test_ends_with_the_rewards_of_the_t_test_but_for_path_speed_and_falls():
     preset, task = load_preset("t_test_guided"), load_task("t_test_guided")
     final = final_rewards(preset, task)
     own = final_rewards(load_preset("t_test"), load_task("t_test_free"))
-    assert {n for n in final if final[n] != own[n]} == {"path_deviation", "termination"}
+    assert {n for n in final if final[n] != own[n]} == {
+        "path_deviation",
+        "termination",
+        "goal_speed",
+    }
     assert own["termination"].weight < final["termination"].weight < 0
     assert final["path_deviation"].weight < own["path_deviation"].weight < 0
     assert set(own) == set(final)
