@@ -65,12 +65,12 @@ class Train:
                 process.
         """
         from hyperleg_design.learning import launch
+        from hyperleg_design.learning.preset_file import load_preset
         from hyperleg_design.simulation.layout import layout_of
         from hyperleg_design.simulation.model import simulation_model
         from hyperleg_design.simulation.stepping.standing import check_standing
         from hyperleg_design.simulation.tasks import load_task
 
-        require("torch", "rsl_rl")
         given = {
             "task": self.task,
             "design": self.design,
@@ -93,6 +93,8 @@ class Train:
         model, layout = simulation_model(posed, task.physics), layout_of(posed)
         task.check_robot(layout, robot.name)
         check_standing(model, layout, task.limits, robot.name)
+        load_preset(self.preset).stages(task.name)
+        require("torch", "rsl_rl")
         if not self.overlay:
             launch.run_here(arguments, self.threads)
         from hyperleg_design.gap.playback.overlay import read_overlay

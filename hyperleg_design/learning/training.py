@@ -70,13 +70,8 @@ class Training:
         alterations: Alterations | None = None,
         spread: DesignSpread | None = None,
     ) -> None:
-        self.task, self.design, self.preset, self.folder, self.description = (
-            task,
-            design,
-            preset,
-            folder,
-            description,
-        )
+        self.task, self.design, self.preset = task, design, preset
+        self.folder, self.description = folder, description
         self.schedule, self.alterations = Schedule(preset, task.name), alterations
         self.sampler = (
             DesignSampler(design, spread, int(preset.simulations), seed) if spread else None

@@ -216,6 +216,18 @@ class Effect(ABC):
         """
         return np.array([[p.low for p in self.parameters], [p.high for p in self.parameters]])
 
+    def change_bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """As `bounds`, of a change since references, in which there may be what the model lacks.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
+        """
+        return self.bounds(location, subject)
+
     def fixed(self, values: np.ndarray) -> np.ndarray:
         """Which parameters stay as a search begins with them: nothing is between their choices.
 

@@ -52,22 +52,31 @@ class Evidence:
     moved: tuple[float, ...]
     """Share of the numbers of each channel in which the torque of its drives is no noise."""
 
-    def scaled(self, cause: Cause) -> Cause:
-        """A cause that pays for scaling torques, as far as they are no noise in the channels that
-        are made of them; once, as these channels are made of the same torques.
+    def paying(self, factor: Factor, trace: np.ndarray, standing: bool) -> Factor:
+        """What scaling torques costs, as far as they are no noise in the channels that are made of
+        them; once, as these channels are made of the same torques, where most of them are.
+
+        Args:
+            factor: of a cause.
+            trace: that its parameter leaves, in all samples or in those under test `(S,)`.
+            standing: whether it acts in all logs.
         """
-        factor = cause.factor
-        if not isinstance(factor, Factor):
-            return cause
-        trace = cause.columns[factor.parameter]
-        row = self.samples.rows[factor.row]  # those of the tests are its first ones
-        number = 0.0
+        rows = [(row.residual_name, row.column) for row in self.samples.rows]
+        number, at = 0.0, factor.row  # rows of the tests are the first ones
         for channel, share in zip(self.channels, self.moved, strict=True):
-            own = (channel.residual, channel.column) == (row.residual_name, row.column)
-            if own or (channel.residual in MOTORS and np.any(trace[channel.samples] != 0)):
-                place = channel.samples if cause.standing else channel.under_test
-                number = max(number, share * float(self.samples.share[place].sum()))
-        return replace(cause, factor=replace(factor, number=number))
+            row = rows.index((channel.residual, channel.column))
+            place = channel.samples if standing else channel.under_test
+            if row == factor.row or (channel.residual in MOTORS and np.any(trace[place] != 0)):
+                numbers = share * float(self.samples.share[place].sum())
+                number, at = max((number, at), (numbers, row), key=lambda one: one[0])
+        return replace(factor, number=number, row=at)
+
+    def scaled(self, cause: Cause) -> Cause:
+        """A cause that pays for scaling torques."""
+        if not isinstance(cause.factor, Factor):
+            return cause
+        trace = cause.columns[cause.factor.parameter]
+        return replace(cause, factor=self.paying(cause.factor, trace, cause.standing))
 
     def acting(self, cause: Cause, standing: bool) -> Cause:
         """A cause whose columns are those of its own logs, with columns of all samples.
@@ -77,6 +86,10 @@ class Evidence:
             standing: whether it acts in all logs.
         """
         missing = len(self.samples.value) - cause.columns.shape[1]
+        if self.references and not standing and cause.linear:
+            bounds = WEIGHED[cause.effect].change_bounds(cause.location, self.signals[0].subject)
+            low, high = np.where(cause.shape, (cause.low, cause.high), bounds)
+            cause = replace(cause, low=low, high=high)
         return self.scaled(
             replace(
                 cause,
@@ -153,8 +166,9 @@ def evidence_of(
     Raises:
         InputError: no log shows a residual.
     """
-    subject = tests[0].subject
-    errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references))
+    subject, healthy = tests[0].subject, (*references, *tests)[0]
+    rubbing = replace(subject, coulomb=dry_friction(healthy))
+    errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), rubbing)
     errors.sort(key=lambda one: not one.steady)
     sets = [_set(tests, errors, rules, tested=True)]
     if not len(sets[0].samples.value):
@@ -177,7 +191,7 @@ def evidence_of(
         {
             (effect.identifier, place, parameter): float(spread)
             for effect in WEIGHED.values()
-            for place, spreads in effect.usual_errors(subject, tests[0].step).items()
+            for place, spreads in effect.usual_errors(rubbing, tests[0].step).items()
             for parameter, spread in enumerate(spreads)
         },
         tuple(moved for _, moved in made),

@@ -18,7 +18,7 @@ from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scale_fit import STEPS, fitted
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.composed import after
-from hyperleg_design.gap.inference.endogenous import Factor
+from hyperleg_design.gap.inference.endogenous import Factor, joined
 from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import (
     Candidate,
@@ -37,8 +37,6 @@ if TYPE_CHECKING:
 
 CLOSE = 0.02
 """Step of a nonlinear fit, over usual sizes, from which it has converged [-]."""
-WHOLE_STEPS = 3
-"""Gauss-Newton steps before they are halved."""
 EASED = 2.0
 """Noise under test over a healthy robot's, in variance, at most where a fit begins [-]."""
 
@@ -82,7 +80,9 @@ class HypothesisFit:
         return np.array([each.log_posterior(scales, self.rules) for each, scales in channels])
 
     def candidate(self, promise: Promise, current: Hypothesis) -> Candidate | None:
-        """An effect linearised where it fits best, by Gauss-Newton steps at fixed scales."""
+        """An effect linearised where it fits best, by Gauss-Newton steps at fixed scales, halved
+        where they lead to worse.
+        """
         traced = self.traces[promise.name]
         if isinstance(traced, list):
             return Candidate(promise.effect, promise.location, (traced[promise.variant],))
@@ -93,7 +93,7 @@ class HypothesisFit:
         values = np.array(traced[0][promise.variant], float)
         scales = eased(self.evidence, current.scales, self.rules)
         best: tuple[float, Cause] | None = None
-        for step in range(self.rules.search.steps):
+        for _ in range(self.rules.search.steps):
             cause = screen.linearise(
                 self.evidence.samples if promise.standing else self.evidence.tests,
                 effect,
@@ -105,15 +105,29 @@ class HypothesisFit:
             cause = self.evidence.acting(cause, promise.standing)
             stack = Stack.of((*current.causes, cause), self.evidence.weight)
             crossing = Crossing.of(self.evidence.channels, stack.rows)
-            solution = self.at_scales(stack, crossing, scales)
-            if best is None or solution.gain > best[0]:
-                best = solution.gain, cause
-            wanted = cause.nulls + solution.theta[-len(cause.nulls) :] * cause.usual
-            move = np.clip(wanted, low, high) - values
+            reached = self._reached(stack, crossing, scales, cause)
+            if best is None or reached > best[0]:
+                best = reached, cause
+                sizes = self.at_scales(stack, crossing, scales).theta[-len(cause.nulls) :]
+                move = np.clip(cause.nulls + sizes * cause.usual, low, high) - values
+            else:
+                move = (best[1].values - values) / 2
             if np.max(np.abs(move) / cause.usual) < CLOSE:
                 break
-            values = values + move * (1.0 if step < WHOLE_STEPS else 0.5)
+            values = values + move
         return None if best is None else Candidate(promise.effect, promise.location, (best[1],))
+
+    def _reached(
+        self, stack: Stack, crossing: Crossing, scales: Sequence[Scales], cause: Cause
+    ) -> float:
+        """What causes gain at fixed scales where the last of them has the values at which it is
+        linearised, without what is known of sizes before [nat].
+        """
+        size = (cause.values - cause.nulls) / cause.usual
+        low, high = (np.r_[end[: -len(size)], size] for end in (stack.low, stack.high))
+        solution = self.at_scales(replace(stack, low=low, high=high), crossing, scales)
+        paid = sum(term.log(solution.theta[place]) for place, term in joined(stack.factors))
+        return solution.gain - solution.occam + paid
 
     def settled(self, hypothesis: Hypothesis) -> Hypothesis:
         """A hypothesis whose causes are linearised at their own estimates, and new ones beside the

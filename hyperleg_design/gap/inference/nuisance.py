@@ -87,7 +87,7 @@ class NuisanceParameter:
 
 
 def nuisance_parameters(
-    subject: Subject, step: float, calibrated: bool = False
+    subject: Subject, step: float, calibrated: bool = False, rubbing: Subject | None = None
 ) -> list[NuisanceParameter]:
     """Nuisance parameters of a robot.
 
@@ -96,8 +96,9 @@ def nuisance_parameters(
         step: of its logs [s].
         calibrated: whether reference logs tell of friction that the model does not have, which
             turns over as the model's does.
+        rubbing: the robot with the dry friction that it has, where that is not the model's.
     """
-    usual = _Usual(subject, step)
+    usual = _Usual(rubbing or subject, step)
     found: list[NuisanceParameter] = []
     for j, joint in enumerate(subject.joints):
         if subject.coulomb[j] > 0:

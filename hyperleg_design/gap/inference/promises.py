@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
+from hyperleg_design.gap.inference.endogenous import Factor, factor
 from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import Name, Solution, Stack, solve
 from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.shrinking import Shrinking
 
 LARGEST = 10.0
 """Size of a start's trace that is tried, over the start's own [-]."""
@@ -73,6 +76,7 @@ class Promises:
         self.evidence, self.rules, self.threads = evidence, rules, threads
         self.traces = traces
         self._crossings: dict[Name, Crossing] = {}
+        self._scaling: dict[Name, list[Factor | None]] = {}
 
     def options(self, name: Name) -> tuple[list[Cause | None], list[np.ndarray]]:
         """Variants or starts of an effect at a place, none where the logs do not show it.
@@ -87,6 +91,28 @@ class Promises:
         if isinstance(traced, list):
             return list(traced), [one.columns for one in traced]
         return [None] * len(traced[1]), list(traced[1][:, None])
+
+    def scaling(self, name: Name) -> list[Factor | None]:
+        """How each start of an effect at a place scales the torques that residuals are made of."""
+        effect, location, standing = name
+        traced = self.traces[name]
+        assert isinstance(traced, tuple)
+        if not WEIGHED[effect].scales:
+            return [None] * len(traced[0])
+        if name not in self._scaling:
+            usual = WEIGHED[effect].usual(location, self.evidence.signals[0].subject)
+            samples = self.evidence.samples if standing else self.evidence.tests
+            whole = factor(samples, effect, location, usual)
+            charges: list[Factor | None] = []
+            for start, trace in zip(*traced, strict=True):
+                size = (start[0] - WEIGHED[effect].nulls[0]) / usual[0]
+                charges.append(
+                    self.evidence.paying(replace(whole, slope=size * whole.slope), trace, standing)
+                    if isinstance(whole, Factor)
+                    else None
+                )
+            self._scaling[name] = charges
+        return self._scaling[name]
 
     def crossing(self, name: Name) -> Crossing:
         """Products of the columns of all options of an effect at a place, one after the other."""
@@ -145,7 +171,7 @@ class Promises:
             taken.append(channel.taken(own, whole))
         products = crossing.reduced(channels, scales)
         base = _Beside(stack, crossing, scales, products, rows * weight, tuple(taken), 0.0)
-        gain = self._solved(base, products, np.zeros(0, int), None).gain if causes else 0.0
+        gain = self._solved(base, products, np.zeros(0, int)).gain if causes else 0.0
         return _Beside(stack, crossing, scales, products, rows * weight, tuple(taken), gain)
 
     def _of(self, name: Name, base: _Beside) -> list[Promise]:
@@ -179,13 +205,19 @@ class Promises:
         found, at = [], rows
         for variant, (cause, own_columns) in enumerate(zip(options, columns, strict=True)):
             place = np.arange(at, at + len(own_columns))
-            gain = self._solved(base, products, place, cause).gain - base.gain
+            scaled = cause.factor if cause else self.scaling(name)[variant]
+            gain = self._solved(base, products, place, cause, scaled).gain - base.gain
             found.append(Promise(*name, variant, gain))
             at += len(own_columns)
         return found
 
     def _solved(
-        self, base: _Beside, products: np.ndarray, place: np.ndarray, cause: Cause | None
+        self,
+        base: _Beside,
+        products: np.ndarray,
+        place: np.ndarray,
+        cause: Cause | None = None,
+        scaled: Factor | Shrinking | None = None,
     ) -> Solution:
         """One option's columns beside those of the hypothesis.
 
@@ -194,6 +226,7 @@ class Promises:
             products: of the residual, its rows, and the option's columns.
             place: of these columns.
             cause: of the option; None for a start.
+            scaled: how its first parameter, or the size of the start, scales torques.
         """
         stack, known = base.stack, 0 if base.stack is None else len(base.stack.columns)
         some = np.r_[0 : 1 + known, place]
@@ -208,9 +241,9 @@ class Promises:
         if cause is not None:
             low, high = ((end - cause.nulls) / cause.usual for end in (cause.low, cause.high))
             stacks.append((low, high, cause.shape))
-            if cause.factor is not None:
-                factors.append((known + cause.factor.parameter, cause.factor))
         elif len(place):
             stacks.append((np.zeros(1), np.full(1, LARGEST), np.zeros(1, bool)))
+        if scaled is not None:
+            factors.append((known + scaled.parameter, scaled))
         low, high, shape = (np.concatenate([s[i] for s in stacks]) for i in range(3))
         return solve(own, low, high, shape.astype(bool), self.rules, factors)

@@ -106,6 +106,8 @@ class SearchRules:
 
     causes: int = 4
     """Most places or groups of places in one set [-]."""
+    standing: int = 12
+    """Most of them that a model lacks in all logs [-]: friction at every joint, for one."""
     candidates: int = 8
     """Effects at places that are fitted to the end in one step [-]."""
     flexible: int = 2
@@ -118,6 +120,8 @@ class SearchRules:
     """Gain in nats from which any is [nat] (assumed)."""
     groups: int = 2
     """Effects that are tried at all of their places at once in one step [-]."""
+    again: float = 2.0
+    """What a known set must promise beyond its fit to be fitted a second time [nat] (assumed)."""
     rounds: int = 12
     """Most rounds of fitting causes and scales in turn [-]."""
     settled: float = 0.05

@@ -59,29 +59,29 @@ class Search:
         self.promises = Promises(evidence, rules, self.traces, threads)
         self.fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.fits.nothing}
         """By the names of their candidates."""
+        self.again: set[tuple[Name, ...]] = set()
+        """Names of those that were fitted a second time."""
 
     def result(self) -> Result:
         """Search forward until no further cause is worth its prior, drop what is not, and put
         others in the place of each.
         """
         current = self.fits.nothing
-        most = self.rules.search.causes * (1 + bool(self.evidence.references))
         fewer: list[Hypothesis] = []
         while True:
-            best = current
-            if len(current.candidates) < most:
-                best = self._better(self.further(current), current)
+            best = self._better(self.further(current), current)
             if best is current and len(current.candidates) > 1:
                 fewer = fewer or self._fewer(current)
                 for one, rest in zip(current.candidates, fewer, strict=True):
                     best = self._better(self.further(rest, one), best)
             if best is current:
-                break
+                best = self._beside_rivals(current)
+                if best is current:
+                    break
             current, fewer = best, self._fewer(best)
             best = self._better(fewer[:-1], current)
             if best is not current:
                 current, fewer = best, []
-        current = self._beside_rivals(current)
         ranked = sorted(self.fitted.values(), key=lambda one: (-one.score, one.names))
         missing = tuple(
             traced
@@ -138,7 +138,8 @@ class Search:
         promises: dict[Name, list[Promise]] = {}
         scales = eased(self.evidence, current.scales, self.rules)
         for one in self.promises.beside(current.causes, scales):
-            promises.setdefault(one.name, []).append(one)
+            if self._room(current, one.standing):
+                promises.setdefault(one.name, []).append(one)
         names = sorted(promises, key=lambda name: (-promises[name][0].gain, name))
         if not names:
             return []
@@ -164,10 +165,15 @@ class Search:
         ]
         return hypotheses
 
+    def _room(self, current: Hypothesis, standing: bool) -> bool:
+        """Whether a hypothesis may have one more cause in all logs, or under test alone."""
+        most = self.rules.search.standing if standing else self.rules.search.causes
+        return sum(one.standing == standing for one in current.candidates) < most
+
     def best_of(self, promises: Sequence[Promise], current: Hypothesis) -> Hypothesis | None:
         """The best fit of an effect at a place beside a hypothesis, from several starts."""
         known = self._known((*current.candidates, promises[0]))
-        if known is not None:
+        if known is not None and not self._promising(known, promises[0], current):
             return known
         linear = WEIGHED[promises[0].effect].linear
         apart: list[Candidate] = []
@@ -178,7 +184,18 @@ class Search:
         fits_of_starts = [
             self.fits.fit((*current.candidates, one), current.scales) for one in apart
         ]
+        fits_of_starts += [known] if known else []
         return max(fits_of_starts, key=lambda one: one.score, default=None)
+
+    def _promising(self, known: Hypothesis, promise: Promise, current: Hypothesis) -> bool:
+        """Whether a hypothesis that was fitted beside others, or linearised elsewhere, is worth one
+        more fit.
+        """
+        expected = current.score - current.log_prior + promise.gain + known.log_prior
+        if known.names in self.again or expected < known.score + self.rules.search.again:
+            return False
+        self.again.add(known.names)
+        return True
 
     def everywhere(
         self, promises: Mapping[Name, Sequence[Promise]], current: Hypothesis

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from causes import unbounded
 
-from hyperleg_design.gap.inference.endogenous import Factor
+from hyperleg_design.gap.effects import WEIGHED
+from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.endogenous import Factor, joined
 from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit
 from hyperleg_design.gap.inference.rules import InferenceRules
 
@@ -60,3 +62,18 @@ def test_a_cause_may_scale_torques_of_a_row_that_references_alone_have(robot_fil
     columns = np.ones((1, len(evidence.samples.value)))
     cause = replace(unbounded("torque_constant", "m_front", columns), factor=factor)
     assert lacking.scaled(cause).factor.number == evidence.scaled(cause).factor.number > 0
+
+
+def test_a_reading_that_is_off_pays_in_the_residual_of_its_drive_whatever_else_scales_the_torque(
+    robot_files,
+):
+    evidence = diagnosed.evidence(robot_files["coupled"], diagnosed.run("limited", 0))
+    subject, samples = evidence.signals[0].subject, evidence.tests
+    causes = {}
+    for effect, values in (("torque_constant", [1.0, 1.0]), ("transmission_ratio", [1.02, 0.0])):
+        found = screen.linearise(samples, WEIGHED[effect], "m_front", np.array(values))
+        causes[effect] = evidence.acting(found, False)
+    rows = [samples.rows[cause.factor.row] for cause in causes.values()]
+    assert [row.residual_name for row in rows] == ["drive", "motion"]
+    assert subject.motors[rows[0].column] == "m_front"
+    assert len(joined([(i, one.factor) for i, one in enumerate(causes.values())])) == 2

@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import diagnosed
 import numpy as np
+import pytest
 import robots
 
 from hyperleg_design.gap.effects import EFFECTS
@@ -51,6 +52,24 @@ def test_friction_of_which_the_model_tells_nothing_turns_over_once_it_is_calibra
         if e in more
     )
     assert 0 < np.abs(trace["motion"]).max() < OF_WAY * 0.001 * strength["hip"] * 2
+
+
+def test_friction_that_a_robot_has_varies_by_a_share_of_it_though_the_model_has_none(signals):
+    bare = replace(signals.subject, coulomb=np.zeros(len(signals.subject.joints)))
+    dry = replace(bare, coulomb=np.array([0.7, 0.0]))
+    known, unknown = (
+        {(e.effect, e.location, e.parameter): e.spread for e in found}
+        for found in (
+            nuisance_parameters(bare, signals.step, rubbing=dry),
+            nuisance_parameters(bare, signals.step),
+        )
+    )
+    assert known.keys() == unknown.keys()
+    more = {name: known[name] - unknown[name] for name in known if known[name] != unknown[name]}
+    share = EFFECTS["coulomb_friction"].model_spread
+    for effect in ("coulomb_friction", "stribeck_friction"):
+        assert more.pop((effect, "hip", 0)) == pytest.approx(share * 0.7)
+    assert not more
 
 
 def test_usual_errors_are_smaller_than_usual_causes(signals, errors):

@@ -13,6 +13,7 @@ from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, so
 from hyperleg_design.gap.inference.promises import LARGEST, Promises
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.screen import NotJudged
+from hyperleg_design.gap.inference.search import traces_of
 from tests.gap.inference.channels.test_channel import made
 
 RULES = InferenceRules()
@@ -30,8 +31,8 @@ def test_gains_are_those_of_all_columns_at_once(constant, alone):
     tested = 2 * len(channels[0].places[0])
     linear, starts = rng.standard_normal((2, size)), rng.standard_normal((3, tested))
     traces = {
-        ("friction", "knee", False): [unbounded("friction", "knee", linear)],
-        ("delay", "robot", False): (np.arange(3.0)[:, None], starts),
+        ("coulomb_friction", "knee", False): [unbounded("coulomb_friction", "knee", linear)],
+        ("command_delay", "robot", False): (np.arange(3.0)[:, None], starts),
         ("payload", "foot", False): NotJudged("payload", "foot", "no motion"),
     }
     acting = unbounded(
@@ -59,8 +60,27 @@ def test_gains_are_those_of_all_columns_at_once(constant, alone):
 
     start = gain(np.zeros((0, size)), np.zeros(0), np.zeros(0)) if causes else 0.0
     for one in found:
-        if one.effect == "friction":
+        if one.effect == "coulomb_friction":
             expected = gain(linear, np.full(2, -np.inf), np.full(2, np.inf))
         else:
             expected = gain(starts[one.variant : one.variant + 1], np.zeros(1), np.full(1, LARGEST))
         assert one.gain == pytest.approx(expected - start, rel=1e-7, abs=1e-7)
+
+
+def test_a_start_that_scales_torques_is_charged_for_it_as_a_cause_is(search):
+    effect, motor = "transmission_ratio", "m_front"
+    places = [(effect, motor)]
+    evidence = search.evidence
+    promises = Promises(evidence, search.rules, traces_of(evidence, places, 1))
+    name = (effect, motor, False)
+    starts, _ = promises.traces[name]
+    for start, scaled in zip(starts, promises.scaling(name), strict=True):
+        for size in (0.5, 1.0, 3.0):
+            scale = 1 + size * (start[0] - 1)
+            assert scaled.log(np.array([size])) == pytest.approx(scaled.number * np.log(scale))
+
+
+def test_a_start_that_scales_no_torque_is_charged_nothing(search):
+    name = ("command_delay", "robot", False)
+    promises = Promises(search.evidence, search.rules, {name: (np.ones((3, 1)), np.ones((3, 4)))})
+    assert promises.scaling(name) == [None, None, None]

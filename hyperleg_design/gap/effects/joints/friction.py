@@ -49,6 +49,14 @@ class ModelledFriction(JointTorque):
             found[0, 0] = -self.modelled(subject)[subject.joints.index(location)]
         return found
 
+    @override
+    def change_bounds(self, location: str, subject: Subject) -> np.ndarray:
+        """There may be less of it than in the references, also where the model has none."""
+        bounds = self.bounds(location, subject)
+        if self.described and not self.modelled(subject)[subject.joints.index(location)]:
+            bounds[0, 0] = -bounds[1, 0]
+        return bounds
+
 
 class _Friction(Live):
     kept: ClassVar[tuple[str, ...]] = ("before", "begun")

@@ -1,10 +1,13 @@
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from pendulum import Wrong, steps
 
+from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.effects.joints.friction import JointFriction
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.gap.signals.resting import sticking
 from hyperleg_design.simulation.drives.machine import Machine
 
@@ -40,3 +43,16 @@ def test_friction_in_a_simulation_is_a_damping_that_gives_its_torque():
     given = live.joint_damping(tick) * tick.velocity
     fall = 2.0 * np.exp(-1)
     assert given[:, 0] == pytest.approx([1 + fall + 0.05, -fall - 0.05], rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["coulomb_friction", "viscous_friction"])
+def test_less_than_in_the_references_may_be_more_than_the_model_has_to_lose(name):
+    subject, joint = load_subject("hyperleg"), "left_knee"
+    bare = replace(
+        subject, coulomb=np.zeros_like(subject.coulomb), viscous=np.zeros_like(subject.viscous)
+    )
+    friction = effect(name)
+    assert np.array_equal(friction.change_bounds(joint, subject), friction.bounds(joint, subject))
+    assert friction.bounds(joint, bare)[0, 0] == 0.0
+    low, high = friction.change_bounds(joint, bare)
+    assert low[0] == -high[0] < 0
