@@ -18,15 +18,12 @@ draw: sums over motors are taken after the efficiencies. Samples hold for one ti
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.sizing.motions.motion import GRAVITY
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True, eq=False)

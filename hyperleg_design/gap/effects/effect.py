@@ -220,11 +220,10 @@ class Effect(ABC):
         """As `bounds`, of a change since references, in which there may be what the model lacks.
 
         Args:
-            location: one of `locations`.
-            subject: the robot.
+            location, subject: as of `bounds`.
 
         Returns:
-            Least and largest values `(2, parameters)`.
+            As `bounds`.
         """
         return self.bounds(location, subject)
 

@@ -76,7 +76,7 @@ class Promises:
         self.evidence, self.rules, self.threads = evidence, rules, threads
         self.traces = traces
         self._crossings: dict[Name, Crossing] = {}
-        self._scaling: dict[Name, list[Factor | None]] = {}
+        self._scaling: dict[Name, Sequence[Factor | Shrinking | None]] = {}
 
     def options(self, name: Name) -> tuple[list[Cause | None], list[np.ndarray]]:
         """Variants or starts of an effect at a place, none where the logs do not show it.
@@ -92,27 +92,35 @@ class Promises:
             return list(traced), [one.columns for one in traced]
         return [None] * len(traced[1]), list(traced[1][:, None])
 
-    def scaling(self, name: Name) -> list[Factor | None]:
-        """How each start of an effect at a place scales the torques that residuals are made of."""
-        effect, location, standing = name
-        traced = self.traces[name]
-        assert isinstance(traced, tuple)
-        if not WEIGHED[effect].scales:
-            return [None] * len(traced[0])
+    def scaling(self, name: Name) -> Sequence[Factor | Shrinking | None]:
+        """How each option of an effect at a place scales the torques that residuals are made of."""
         if name not in self._scaling:
-            usual = WEIGHED[effect].usual(location, self.evidence.signals[0].subject)
-            samples = self.evidence.samples if standing else self.evidence.tests
-            whole = factor(samples, effect, location, usual)
-            charges: list[Factor | None] = []
-            for start, trace in zip(*traced, strict=True):
-                size = (start[0] - WEIGHED[effect].nulls[0]) / usual[0]
-                charges.append(
-                    self.evidence.paying(replace(whole, slope=size * whole.slope), trace, standing)
-                    if isinstance(whole, Factor)
-                    else None
-                )
-            self._scaling[name] = charges
+            traced = self.traces[name]
+            assert not isinstance(traced, screen.NotJudged)
+            self._scaling[name] = (
+                [one.factor for one in traced]
+                if isinstance(traced, list)
+                else self._of_starts(name, *traced)
+            )
         return self._scaling[name]
+
+    def _of_starts(
+        self, name: Name, starts: np.ndarray, traces: np.ndarray
+    ) -> Sequence[Factor | None]:
+        """As `scaling`, of the sizes of starts."""
+        effect, location, standing = WEIGHED[name[0]], name[1], name[2]
+        whole = None
+        if effect.scales:
+            usual = effect.usual(location, self.evidence.signals[0].subject)
+            samples = self.evidence.samples if standing else self.evidence.tests
+            whole = factor(samples, effect.identifier, location, usual)
+        if not isinstance(whole, Factor):
+            return [None] * len(starts)
+        sizes = (starts[:, 0] - effect.nulls[0]) / usual[0]
+        return [
+            self.evidence.paying(replace(whole, slope=size * whole.slope), trace, standing)
+            for size, trace in zip(sizes, traces, strict=True)
+        ]
 
     def crossing(self, name: Name) -> Crossing:
         """Products of the columns of all options of an effect at a place, one after the other."""
@@ -203,9 +211,9 @@ class Promises:
             products[np.ix_(at, at)] += np.tensordot(weight, own, 1) - mine.T @ mine
         products[rows:, :rows] = products[:rows, rows:].T
         found, at = [], rows
-        for variant, (cause, own_columns) in enumerate(zip(options, columns, strict=True)):
+        each = zip(options, columns, self.scaling(name), strict=True)
+        for variant, (cause, own_columns, scaled) in enumerate(each):
             place = np.arange(at, at + len(own_columns))
-            scaled = cause.factor if cause else self.scaling(name)[variant]
             gain = self._solved(base, products, place, cause, scaled).gain - base.gain
             found.append(Promise(*name, variant, gain))
             at += len(own_columns)
