@@ -296,7 +296,7 @@ class Study(Printing):
     def run(self) -> None:
         """Run the study and write its page."""
         from hyperleg_design.report.study.study import run_study
-        from hyperleg_design.report.walks.evaluated import coverage, coverage_text
+        from hyperleg_design.report.walks.compared import coverage, coverage_text
         from hyperleg_design.writing import check_output_folder
 
         check_output_folder(self.out)

@@ -323,7 +323,7 @@ class Paper(Printing):
 
     def run(self) -> None:
         """Evaluate the policies and write the page."""
-        from hyperleg_design.report.walks.evaluated import coverage, coverage_text
+        from hyperleg_design.report.walks.compared import coverage, coverage_text
         from hyperleg_design.report.walks.paper_page import read_tables, run_paper, tables_text
         from hyperleg_design.writing import check_output_folder
 

@@ -73,7 +73,7 @@ def test_campaign_speaks_json(capsys, tmp_path: Path):
 
 
 def test_missing_trainings_are_named(tmp_path: Path):
-    from hyperleg_design.report.walks.evaluated import coverage, coverage_text
+    from hyperleg_design.report.walks.compared import coverage, coverage_text
 
     (tmp_path / "walk_upright-toe-0").mkdir()
     (tmp_path / "walk_upright-toe-0" / "policy.onnx").write_bytes(b"x")

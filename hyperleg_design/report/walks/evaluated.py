@@ -10,26 +10,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, load_protocol
 from hyperleg_design.evaluation.result import Evaluation
 from hyperleg_design.evaluation.result_tables import trial_table
 from hyperleg_design.evaluation.robustness import CONDITIONS, robustness
-from hyperleg_design.evaluation.shipped import (
-    Shipped,
-    check_different,
-    shipped_folder,
-    shipped_policies,
-    trainings_text,
-)
+from hyperleg_design.evaluation.shipped import Shipped, check_different
 from hyperleg_design.evaluation.versus_paper import VARIANTS
-from hyperleg_design.learning.campaigns.campaign import (
-    compared_groups,
-    load_campaign,
-    shipped_campaigns,
-    shipped_starts,
+from hyperleg_design.report.walks.compared import (
+    compared_policies,
+    missing_trainings,
+    rewarded_policies,
 )
 
 if TYPE_CHECKING:
@@ -39,10 +31,6 @@ if TYPE_CHECKING:
 
 WALK, T_TEST = "walk", "t_test"
 """Kinds of protocol."""
-CAMPAIGNS = ("campaign", "campaign_t_test")
-"""Campaigns whose arms the analysis plan compares; the others ask other questions."""
-REWARDS = "campaign_rewards"
-"""Campaign that switches one term of the reward on at a time."""
 TIME_CONSTANTS = (0.01, 0.014, 0.02, 0.028, 0.04)
 """Time constants of the contact over which impacts are shown [s]; the first is the stiffest that
 steps of 5 ms allow."""
@@ -185,7 +173,7 @@ def evaluate_shipped(
     Raises:
         InputError: no such folder, a policy that cannot be used, or the same policy twice.
     """
-    policies, rewarded = _compared(folder), _rewarded(folder)
+    policies, rewarded = compared_policies(folder), rewarded_policies(folder)
     check_different(policy.path for policy in [*policies, *rewarded])
     protocols = {WALK: walk or load_protocol("walk"), T_TEST: t_test or load_protocol("t_test")}
     few = protocols[WALK].changed(trials=min(BAND_TRIALS, int(protocols[WALK].trials)))
@@ -275,102 +263,6 @@ def _over_contacts(
     for (policy, constant), evaluation in zip(jobs, walks, strict=True):
         by_design.setdefault(policy.design, {}).setdefault(constant, []).append(evaluation)
     return by_design
-
-
-def missing_trainings(policies: Sequence[Shipped]) -> list[str]:
-    """List the trainings of the study's campaigns that none of the policies comes from.
-
-    Args:
-        policies: that are there.
-
-    Returns:
-        Names of the trainings, campaign by campaign, by group and design.
-    """
-    there = {p.training for p in policies}
-    runs = [run for campaign in CAMPAIGNS for run in load_campaign(campaign).runs if run.compared]
-    return [run.name for run in runs if run.name not in there]
-
-
-def coverage(folder: str | Path | None = None) -> dict[str, list[str]]:
-    """Trainings of a folder that will be evaluated, and those of the study that it lacks.
-
-    Args:
-        folder: of trainings; the shipped policies by default.
-
-    Returns:
-        Names of trainings under `evaluated` and `missing`.
-
-    Raises:
-        InputError: as `check_policies`.
-    """
-    check_policies(folder)
-    policies = _compared(folder, late=False)
-    return {
-        "evaluated": [policy.training for policy in policies],
-        "missing": missing_trainings(policies),
-    }
-
-
-def check_policies(folder: str | Path | None = None) -> None:
-    """Check that a folder of trainings holds policies that the paper's experiment compares.
-
-    Args:
-        folder: of trainings; the shipped policies by default.
-
-    Raises:
-        InputError: no such folder, or none of these policies.
-    """
-    if not (_compared(folder, late=False) or _rewarded(folder)):
-        remedy = (
-            "holds no finished training of the study; expects folders such as walk_upright-toe-1, "
-            "which `hyperleg campaign run campaign` makes, or no --policies for the shipped ones"
-        )
-        raise InputError("policies", "", str(folder or shipped_folder()), remedy)
-
-
-def coverage_text(trainings: Mapping[str, Sequence[str]]) -> str:
-    """Write `coverage` as one sentence.
-
-    Args:
-        trainings: names of those evaluated and of those missing.
-
-    Returns:
-        The sentence; empty where nothing is missing.
-    """
-    evaluated, missing = trainings["evaluated"], trainings["missing"]
-    if not missing:
-        return ""
-    return (
-        f"{len(evaluated)} trainings are evaluated; of those that the study plans, {len(missing)} "
-        f"are missing: {trainings_text(missing)}"
-    )
-
-
-def _compared(folder: str | Path | None, *, late: bool = True) -> list[Shipped]:
-    """Policies of the HyperLeg in a folder that are more than starts of others, and that no
-    campaign made for another question than the plan's.
-    """
-    others = shipped_starts() | other_groups()
-    policies = shipped_policies(folder, late=late)
-    return [p for p in policies if p.family == "hyperleg" and p.group not in others]
-
-
-def _rewarded(folder: str | Path | None) -> list[Shipped]:
-    """Last policies of the trainings under several rewards."""
-    groups = compared_groups(REWARDS)
-    return [p for p in shipped_policies(folder, late=False) if p.group in groups]
-
-
-def other_groups() -> frozenset[str]:
-    """List the groups that only campaigns other than `CAMPAIGNS` compare.
-
-    Returns:
-        Their names.
-    """
-    groups: dict[bool, set[str]] = {True: set(), False: set()}
-    for name in shipped_campaigns():
-        groups[name in CAMPAIGNS] |= set(compared_groups(name))
-    return frozenset(groups[False] - groups[True])
 
 
 def _banded(policies: Sequence[Shipped], kinds: Sequence[str]) -> list[Shipped]:

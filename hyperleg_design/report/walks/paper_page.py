@@ -15,7 +15,8 @@ from hyperleg_design.report.drawer import FIGURES, Drawer
 from hyperleg_design.report.page import Page, Section
 from hyperleg_design.report.text import table
 from hyperleg_design.report.walks.beside_paper import row_facts, rows_beside_paper
-from hyperleg_design.report.walks.evaluated import Evaluated, check_policies, evaluate_shipped
+from hyperleg_design.report.walks.compared import check_policies
+from hyperleg_design.report.walks.evaluated import Evaluated, evaluate_shipped
 from hyperleg_design.report.walks.planned_part import planned_rows, row_numbers
 from hyperleg_design.report.walks.policy_parts import parts
 from hyperleg_design.report.walks.rewards_part import reward_rows

@@ -16,8 +16,9 @@ from hyperleg_design.report.sizing.envelope_figures import torque_speed_figure
 from hyperleg_design.report.style import later
 from hyperleg_design.report.walks import walk_parts as walks
 from hyperleg_design.report.walks.arms_part import arms
+from hyperleg_design.report.walks.compared import CAMPAIGNS
 from hyperleg_design.report.walks.confound_part import confound
-from hyperleg_design.report.walks.evaluated import CAMPAIGNS, T_TEST, WALK, Evaluated
+from hyperleg_design.report.walks.evaluated import T_TEST, WALK, Evaluated
 from hyperleg_design.report.walks.impact_part import impacts
 from hyperleg_design.report.walks.learning_figures import learning_figure
 from hyperleg_design.report.walks.planned_part import planned, planned_rows

@@ -14,7 +14,7 @@ from hyperleg_design.learning.campaigns.campaign import compared_groups
 from hyperleg_design.report.drawer import Part
 from hyperleg_design.report.page import Table
 from hyperleg_design.report.walks.beside_paper import percent
-from hyperleg_design.report.walks.evaluated import REWARDS
+from hyperleg_design.report.walks.compared import REWARDS
 from hyperleg_design.simulation.tasks import load_task
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.protocol import Steady, TTestProtocol, WalkProtocol
-from hyperleg_design.report.walks.evaluated import T_TEST, WALK, evaluate_shipped, other_groups
+from hyperleg_design.report.walks.evaluated import T_TEST, WALK, evaluate_shipped
 
 SHORT = {
     "walk": WalkProtocol(trials=2, distance=2.0, time_limit=1.6, steady=Steady(begin=0.5)),
@@ -94,9 +94,3 @@ def test_an_empty_folder_gives_nothing_and_a_wrong_one_is_told(tmp_path):
     assert len(found.missing) > 30
     with pytest.raises(InputError, match="no such folder"):
         evaluate_shipped(tmp_path / "nothing")
-
-
-def test_policies_that_answer_other_questions_stay_out_of_the_planned_comparison() -> None:
-    others = other_groups()
-    assert {"walk_free", "walk_clock", "walk_power", "walk_force", "walk_uneven"} <= others
-    assert not {"walk_upright", "t_test_free", "own_group"} & others

@@ -9,7 +9,7 @@ from scipy import stats
 
 from hyperleg_design.learning.campaigns.campaign import compared_groups
 from hyperleg_design.report.page import Table
-from hyperleg_design.report.walks.evaluated import REWARDS
+from hyperleg_design.report.walks.compared import REWARDS
 from hyperleg_design.report.walks.rewards_part import MEASURES, reward_rows, rewards
 from hyperleg_design.simulation.tasks import load_task
 
