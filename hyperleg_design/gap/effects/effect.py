@@ -84,9 +84,9 @@ class Effect(ABC):
     told_apart: ClassVar[Mapping[str, Set[str]]] = {}
     """By name of an experiment of `gap/experiments/experiment.py`, effects that it tells apart from
     this one; that one of two effects says so is enough."""
-    steady: ClassVar[bool] = False
-    """Whether its usual errors are of how a robot is built, and so the same in all sessions: masses
-    do not change overnight, as friction, zeros of encoders and torque constants do."""
+    inertial: ClassVar[bool] = False
+    """Whether it is of masses or rotors. Its usual errors are the same in all sessions, as these do
+    not change overnight, and its trace counts as far as drives feel accelerations."""
     nuisance_rank: ClassVar[int] = 0
     """Order of its nuisance parameters among those of other effects at the same place; sums over
     them keep it, so that answers are the same to the last digit."""

@@ -31,8 +31,6 @@ from hyperleg_design.gap.signals.sliding import dry_friction
 
 MOST_BANDS = 5
 """Bands of a channel, see `filtering.EDGES`."""
-SLOWEST_BANDS = 3
-"""Bands of a channel whose load sizes its discrepancy: in faster ones it is mostly noise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +113,8 @@ class _Set:
     samples: Samples
     floors: list[list[np.ndarray]]
     """Expected noise of each log and row."""
+    felt: list[list[np.ndarray]]
+    """Share of the torque that motion needs which drives show, of each log and row."""
     errors: np.ndarray
     """Columns of the nuisance parameters, steady ones first `(p, S)`."""
     steady: int
@@ -145,7 +145,7 @@ class _Set:
             loads.append(
                 sum(
                     float(np.mean(own[band == b] ** 2))
-                    for b in range(SLOWEST_BANDS)
+                    for b in range(noise_model.SLOWEST_BANDS)
                     if (band == b).any()
                 )
             )
@@ -169,7 +169,7 @@ def evidence_of(
     subject, healthy = tests[0].subject, (*references, *tests)[0]
     rubbing = replace(subject, coulomb=dry_friction(healthy))
     errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), rubbing)
-    errors.sort(key=lambda one: not one.steady)
+    errors.sort(key=lambda one: not one.inertial)
     sets = [_set(tests, errors, rules, tested=True)]
     if not len(sets[0].samples.value):
         raise InputError(
@@ -210,6 +210,7 @@ def _joined(sets: Sequence[_Set], rules: InferenceRules) -> Samples:
     return gather(
         [filtered for one in sets for filtered in one.filtered_logs],
         [floors for one in sets for floors in one.floors],
+        [felt for one in sets for felt in one.felt],
         sessions,
         rules.noise.information,
     )
@@ -223,16 +224,18 @@ def _set(
 ) -> _Set:
     filtered_logs = [filtering.filtered_log(one, resting.sticking(one)) for one in signals]
     floors = [noise_model.expected(one, rules.noise) for one in filtered_logs]
+    felt = [[noise_model.felt(log, row) for row in range(len(log.rows))] for log in filtered_logs]
     names = [one.log.metadata.session or f"\0{i}" for i, one in enumerate(signals)]
     order = list(dict.fromkeys(names))
     sessions = [order.index(name) for name in names]
-    samples = gather(filtered_logs, floors, sessions, rules.noise.information)
+    samples = gather(filtered_logs, floors, felt, sessions, rules.noise.information)
     columns = np.zeros((len(errors), len(samples.value)))
     for filtered, places in zip(filtered_logs, samples.where, strict=True):
         for row, found in nuisance_traces.columns(filtered, errors).items():
             columns[:, places[row]] = found
-    steady = sum(one.steady for one in errors)
-    return _Set(filtered_logs, samples, floors, columns, steady, tested)
+    columns[[one.inertial for one in errors]] *= samples.felt
+    steady = sum(one.inertial for one in errors)
+    return _Set(filtered_logs, samples, floors, felt, columns, steady, tested)
 
 
 def _channel(

@@ -27,7 +27,9 @@ def log_prior(
     acting: set[tuple[str, bool]] = set()
     for one in hypothesis.candidates:
         kind = one.effect, one.standing
-        chance = own.probability * (own.again if kind in acting else 1 / len(count))
+        changed = bool(evidence.references) and not one.standing
+        chance = own.changed if changed else own.probability
+        chance *= own.again if kind in acting else 1 / len(count)
         if acting and kind not in acting:
             chance *= 1 - own.again
         acting.add(kind)
@@ -119,5 +121,5 @@ def usual_error(
     """
     share = 1.0
     if evidence.references and not standing:
-        share = 0.0 if WEIGHED[parameter[0]].steady else rules.discrepancy.change
+        share = 0.0 if WEIGHED[parameter[0]].inertial else rules.discrepancy.change
     return share * rules.cause.usual * evidence.usual.get(parameter, 0.0)

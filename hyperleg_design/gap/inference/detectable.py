@@ -62,17 +62,19 @@ def detectable(search: Search) -> tuple[Detectable, ...]:
                 entries.append((name, place, i, traced[0].usual[i], most[i], information[i]))
         elif len(sizes) == 1:
             i = sizes[0]
-            change = np.abs(traced[0][:, i] - effect.nulls[i])
+            change = np.abs(traced.values[:, i] - effect.nulls[i])
             moved = change > 0
             if moved.any():
-                plain = moved & usual_shape(effect, place, subject, traced[0])
+                plain = moved & usual_shape(effect, place, subject, traced.values)
                 tried = plain if plain.any() else moved
                 first = int(np.argmin(np.where(tried, change, np.inf)))
                 entries.append((name, place, i, float(change[first]), most[i], information[first]))
+    rules = search.rules.cause
+    chance = rules.changed if search.evidence.references else rules.probability
     found = []
     for name, place, i, unit_size, limit, own in entries:
         hypotheses = len(search.count) * search.count[name]
-        odds = float(np.log(hypotheses / search.rules.cause.probability))
+        odds = float(np.log(hypotheses / chance))
         deviation = unit_size / np.sqrt(max(own, LEAST))
         usual = usual_error(search.evidence, search.rules, (name, place, i))
         beyond = usual + OFTEN * search.rules.posterior.interval * deviation

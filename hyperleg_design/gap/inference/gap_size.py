@@ -1,8 +1,9 @@
 """How large the gap is with the nominal model, with the causes, and without anything but noise.
 
 All three are root mean squares of what cross-validation leaves of the residuals under test, over
-their expected noise, of the channels that count: those in the unit of the one with the largest
-excess over the noise, as far as their own is not much smaller.
+their expected noise, of the channels that count: of those in which the causes show, or of all where
+there are none, those in the unit of the one with the largest excess over the noise, as far as their
+own is not much smaller.
 """
 
 from __future__ import annotations
@@ -62,10 +63,13 @@ class GapSize:
     @cached_property
     def counts(self) -> np.ndarray:
         """Channels that count, all in the unit of the largest `(channels,)` of bool."""
-        units = [RESIDUALS[channel.residual][1] for channel in self.evidence.channels]
-        largest = int(np.argmax(self.excess))
+        channels = self.evidence.channels
+        units = [RESIDUALS[channel.residual][1] for channel in channels]
+        shown = np.array([bool(self.held.trace[one.under_test].any()) for one in channels])
+        shown |= not shown.any()
+        largest = int(np.argmax(np.where(shown, self.excess, -1.0)))
         same = np.array([unit == units[largest] for unit in units])
-        return same & (self.excess >= COUNTS * self.excess[largest])
+        return shown & same & (self.excess >= COUNTS * self.excess[largest])
 
     @property
     def unit(self) -> str:

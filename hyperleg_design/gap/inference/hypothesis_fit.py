@@ -90,7 +90,7 @@ class HypothesisFit:
         effect = WEIGHED[promise.effect]
         subject = self.evidence.signals[0].subject
         low, high = effect.bounds(promise.location, subject)
-        values = np.array(traced[0][promise.variant], float)
+        values = np.array(promise.values, float)
         scales = eased(self.evidence, current.scales, self.rules)
         best: tuple[float, Cause] | None = None
         for _ in range(self.rules.search.steps):

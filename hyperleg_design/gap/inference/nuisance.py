@@ -69,9 +69,9 @@ class NuisanceParameter:
     """Standard deviation from the null, in the parameter's unit."""
 
     @property
-    def steady(self) -> bool:
-        """Whether it is the same in all sessions, see `Effect.steady`."""
-        return self.effect in EFFECTS and EFFECTS[self.effect].steady
+    def inertial(self) -> bool:
+        """Whether it is of masses or rotors, see `Effect.inertial`."""
+        return self.effect in EFFECTS and EFFECTS[self.effect].inertial
 
     @property
     def name(self) -> str:

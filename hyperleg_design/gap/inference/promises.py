@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from hyperleg_design.gap.effects import WEIGHED
+from hyperleg_design.gap.effects.spanned import SpannedEffect
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.crossing import Crossing
@@ -32,6 +34,8 @@ class Promise:
     variant: int
     gain: float
     """[nat]"""
+    values: tuple[float, ...] = ()
+    """Of the start."""
 
     @property
     def name(self) -> Name:
@@ -79,7 +83,8 @@ class Promises:
         self._scaling: dict[Name, Sequence[Factor | Shrinking | None]] = {}
 
     def options(self, name: Name) -> tuple[list[Cause | None], list[np.ndarray]]:
-        """Variants or starts of an effect at a place, none where the logs do not show it.
+        """Variants of an effect at a place, or columns of its starts; none where the logs do not
+        show it.
 
         Returns:
             Causes, None for starts, and their columns, unweighted `(k, S)` each, or shorter where
@@ -90,7 +95,7 @@ class Promises:
             return [], []
         if isinstance(traced, list):
             return list(traced), [one.columns for one in traced]
-        return [None] * len(traced[1]), list(traced[1][:, None])
+        return [None] * len(traced.columns), list(traced.columns[:, None])
 
     def scaling(self, name: Name) -> Sequence[Factor | Shrinking | None]:
         """How each option of an effect at a place scales the torques that residuals are made of."""
@@ -100,13 +105,11 @@ class Promises:
             self._scaling[name] = (
                 [one.factor for one in traced]
                 if isinstance(traced, list)
-                else self._of_starts(name, *traced)
+                else self._of_starts(name, traced)
             )
         return self._scaling[name]
 
-    def _of_starts(
-        self, name: Name, starts: np.ndarray, traces: np.ndarray
-    ) -> Sequence[Factor | None]:
+    def _of_starts(self, name: Name, starts: screen.Starts) -> Sequence[Factor | None]:
         """As `scaling`, of the sizes of starts."""
         effect, location, standing = WEIGHED[name[0]], name[1], name[2]
         whole = None
@@ -115,11 +118,11 @@ class Promises:
             samples = self.evidence.samples if standing else self.evidence.tests
             whole = factor(samples, effect.identifier, location, usual)
         if not isinstance(whole, Factor):
-            return [None] * len(starts)
-        sizes = (starts[:, 0] - effect.nulls[0]) / usual[0]
+            return [None] * len(starts.values)
+        sizes = (starts.values[:, 0] - effect.nulls[0]) / usual[0]
         return [
             self.evidence.paying(replace(whole, slope=size * whole.slope), trace, standing)
-            for size, trace in zip(sizes, traces, strict=True)
+            for size, trace in zip(sizes, starts.traces, strict=True)
         ]
 
     def crossing(self, name: Name) -> Crossing:
@@ -159,9 +162,13 @@ class Promises:
             scales: by channel.
 
         Returns:
-            In the order of `crossing` `(m,)`.
+            Of each column of a linear effect, else of each start `(m,)`.
         """
-        return np.diag(self.crossing(name).reduced(self.evidence.channels, scales))[1:]
+        products = self.crossing(name).reduced(self.evidence.channels, scales)[1:, 1:]
+        traced = self.traces[name]
+        if isinstance(traced, screen.Starts) and traced.weights is not None:
+            products = traced.weights @ products @ traced.weights.T
+        return np.diag(products)
 
     def _base(self, causes: Sequence[Cause], scales: tuple[Scales, ...]) -> _Beside:
         channels, weight = self.evidence.channels, self.evidence.weight
@@ -210,6 +217,9 @@ class Promises:
             products[:rows, at] += beside
             products[np.ix_(at, at)] += np.tensordot(weight, own, 1) - mine.T @ mine
         products[rows:, :rows] = products[:rows, rows:].T
+        traced = self.traces[name]
+        if isinstance(traced, screen.Starts):
+            return self._of_values(name, base, products, traced)
         found, at = [], rows
         each = zip(options, columns, self.scaling(name), strict=True)
         for variant, (cause, own_columns, scaled) in enumerate(each):
@@ -219,6 +229,35 @@ class Promises:
             at += len(own_columns)
         return found
 
+    def _of_values(
+        self, name: Name, base: _Beside, products: np.ndarray, starts: screen.Starts
+    ) -> list[Promise]:
+        """All starts of an effect at a place, and where a linear fit of its span leads.
+
+        Args:
+            name: of the effect and place.
+            base: the hypothesis beside which they are tried.
+            products: of the residual, its rows, and the columns of the starts.
+            starts: of the effect.
+        """
+        rows, values = len(base.products), starts.values
+        scaling = list(self.scaling(name))
+        effect = WEIGHED[name[0]]
+        if isinstance(effect, SpannedEffect) and starts.weights is not None:
+            span = rows + np.arange(len(starts.columns))
+            sizes = self._solved(base, products, span, free=True).theta[-len(span) :]
+            subject = self.evidence.signals[0].subject
+            nearest = effect.nearest(name[1], subject, sizes)
+            values = np.concatenate([nearest, values])
+            weights = np.concatenate([effect.in_span(name[1], subject, nearest), starts.weights])
+            turn = block_diag(np.eye(rows), weights)
+            products, scaling = turn @ products @ turn.T, [None] * len(values)
+        found = []
+        for number, (start, scaled) in enumerate(zip(values, scaling, strict=True)):
+            solution = self._solved(base, products, np.array([rows + number]), None, scaled)
+            found.append(Promise(*name, number, solution.gain - base.gain, tuple(start.tolist())))
+        return found
+
     def _solved(
         self,
         base: _Beside,
@@ -226,6 +265,7 @@ class Promises:
         place: np.ndarray,
         cause: Cause | None = None,
         scaled: Factor | Shrinking | None = None,
+        free: bool = False,
     ) -> Solution:
         """One option's columns beside those of the hypothesis.
 
@@ -235,6 +275,7 @@ class Promises:
             place: of these columns.
             cause: of the option; None for a start.
             scaled: how its first parameter, or the size of the start, scales torques.
+            free: whether sizes of starts may be anything.
         """
         stack, known = base.stack, 0 if base.stack is None else len(base.stack.columns)
         some = np.r_[0 : 1 + known, place]
@@ -250,7 +291,9 @@ class Promises:
             low, high = ((end - cause.nulls) / cause.usual for end in (cause.low, cause.high))
             stacks.append((low, high, cause.shape))
         elif len(place):
-            stacks.append((np.zeros(1), np.full(1, LARGEST), np.zeros(1, bool)))
+            low, high = (-np.inf, np.inf) if free else (0.0, LARGEST)
+            count = len(place)
+            stacks.append((np.full(count, low), np.full(count, high), np.zeros(count, bool)))
         if scaled is not None:
             factors.append((known + scaled.parameter, scaled))
         low, high, shape = (np.concatenate([s[i] for s in stacks]) for i in range(3))

@@ -88,7 +88,11 @@ class CauseRules:
     """What is known of causes before any log."""
 
     probability: float = 0.5
-    """That anything of the catalogue is wrong [-] (assumed)."""
+    """That the model lacks anything of the catalogue, and that it lacks one thing more [-]
+    (assumed)."""
+    changed: float = 0.05
+    """That anything has changed since the references, and that one thing more has [-] (developed:
+    of faults drawn on real logs true causes lead by 5 nats and more, false ones by 1 to 4)."""
     again: float = 0.5
     """That a further cause is an effect that acts at another place already [-]: gears, drives and
     settings of one kind fail alike (assumed)."""
@@ -120,8 +124,6 @@ class SearchRules:
     """Gain in nats from which any is [nat] (assumed)."""
     groups: int = 2
     """Effects that are tried at all of their places at once in one step [-]."""
-    again: float = 2.0
-    """What a known set must promise beyond its fit to be fitted a second time [nat] (assumed)."""
     rounds: int = 12
     """Most rounds of fitting causes and scales in turn [-]."""
     settled: float = 0.05

@@ -34,6 +34,8 @@ class Samples:
     """Standard deviation expected of it `(S,)`."""
     share: np.ndarray
     """Independent numbers that each stands for `(S,)`."""
+    felt: np.ndarray
+    """Share of the torque that motion needs which drives show `(S,)`."""
     row: np.ndarray
     """Place in `rows` `(S,)`."""
     group: np.ndarray
@@ -72,10 +74,19 @@ class Samples:
         return np.asarray(np.sqrt(self.share) / self.floor)
 
     def columns(
-        self, trace: Callable[[Signals], Mapping[str, np.ndarray]], count: int
+        self,
+        trace: Callable[[Signals], Mapping[str, np.ndarray]],
+        count: int,
+        accelerated: bool = False,
     ) -> np.ndarray | None:
         """Samples of `count` traces `(count, S)`, in their units; None where no log shows any of
         them.
+
+        Args:
+            trace: of a log.
+            count: of the traces.
+            accelerated: whether the traces are torques over accelerations, which count as far as
+                drives feel them.
         """
         found = None
         for filtered_log, places in zip(self.filtered_logs, self.where, strict=True):
@@ -83,12 +94,13 @@ class Samples:
                 if found is None:
                     found = np.zeros((count, len(self.value)))
                 found[:, places[row]] = values
-        return found
+        return found * self.felt if accelerated and found is not None else found
 
 
 def gather(
     filtered_logs: Sequence[FilteredLog],
     floors: Sequence[Sequence[np.ndarray]],
+    felt: Sequence[Sequence[np.ndarray]],
     sessions: Sequence[int],
     information: float,
 ) -> Samples:
@@ -97,6 +109,7 @@ def gather(
     Args:
         filtered_logs: one a log.
         floors: of each log, of each of its rows `(samples,)`.
+        felt: share of the torque that motion needs which drives show, likewise.
         sessions: number of the session of each log, from 0.
         information: share of what would be independent numbers in white noise that counts as such.
     """
@@ -108,7 +121,7 @@ def gather(
     groups: dict[tuple[int, int], int] = {}
     chunks = [(log, chunk) for log, count in enumerate(deal) for chunk in range(count)]
     parts = {chunk: i for i, chunk in enumerate(chunks)}
-    table: list[list[np.ndarray]] = [[] for _ in range(7)]
+    table: list[list[np.ndarray]] = [[] for _ in range(8)]
     where, start, blocks = [], 0, 0
     for number, filtered_log in enumerate(filtered_logs):
         places = []
@@ -125,7 +138,8 @@ def gather(
             values = filtered_log.sample(place, residual[None])[0]
             block = blocks + (time / BLOCK).astype(int)
             labels = np.full(len(band), overall), group, part, block
-            columns = values, floors[number][place], share * information, *labels
+            numbers = floors[number][place], share * information, felt[number][place]
+            columns = values, *numbers, *labels
             for column, own in zip(table, columns, strict=True):
                 column.append(own)
             places.append(slice(start, start + len(band)))
@@ -140,10 +154,11 @@ def gather(
         joined[0],
         joined[1],
         joined[2],
-        joined[3].astype(int),
+        joined[3],
         joined[4].astype(int),
         joined[5].astype(int),
         joined[6].astype(int),
+        joined[7].astype(int),
         tuple(where),
         np.array([band for _, band in groups]),
         np.array(sessions)[log_of],

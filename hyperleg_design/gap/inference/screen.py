@@ -12,6 +12,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.effect import Effect
+from hyperleg_design.gap.effects.spanned import SpannedEffect
 from hyperleg_design.gap.inference.endogenous import factor
 from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.samples import Samples
@@ -39,9 +40,26 @@ class NotJudged:
     reason: str
 
 
-Traces: TypeAlias = NotJudged | list[Cause] | tuple[np.ndarray, np.ndarray]
-"""Why an effect at a place is not judged; it linearised, in each variant; or starts `(s, k)` and
-their traces `(s, S)`."""
+@dataclass(frozen=True, eq=False)
+class Starts:
+    """Where searches for the values of a nonlinear effect at a place begin."""
+
+    values: np.ndarray
+    """`(s, k)`"""
+    columns: np.ndarray
+    """Traces of which theirs are sums `(p, S)`."""
+    weights: np.ndarray | None = None
+    """How much of each trace those of the starts hold `(s, p)`; None where they are the columns."""
+
+    @property
+    def traces(self) -> np.ndarray:
+        """Of the starts `(s, S)`."""
+        return self.columns if self.weights is None else self.weights @ self.columns
+
+
+Traces: TypeAlias = NotJudged | list[Cause] | Starts
+"""Why an effect at a place is not judged; it linearised, in each variant; or where searches
+begin."""
 
 
 def spread(job: Callable[[T], R], items: Sequence[T], threads: int) -> list[R]:
@@ -73,7 +91,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         nulls = np.where(shape, values, nulls)
         low, high = np.where(shape, nulls, low), np.where(shape, nulls, high)
         settings, divide = nulls + np.diag(np.where(shape, 0.0, usual)), np.ones(k)
-        found = samples.columns(lambda s: effect.trace(s, location, settings), k)
+        found = samples.columns(lambda s: effect.trace(s, location, settings), k, effect.inertial)
         if found is None:
             return None
         columns, constant = found, np.zeros(found.shape[1])
@@ -86,7 +104,9 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         divide = (tried - values) / usual
         some = np.flatnonzero(divide)
         settings = np.concatenate([(values + np.diag(tried - values))[some], values[None]])
-        found = samples.columns(lambda s: effect.trace(s, location, settings), len(settings))
+        found = samples.columns(
+            lambda s: effect.trace(s, location, settings), len(settings), effect.inertial
+        )
         if found is None:
             return None
         columns = np.zeros((k, found.shape[1]))
@@ -145,8 +165,20 @@ def trace(samples: Samples, effect: Effect, location: str) -> Traces:
             c for c in causes if c is not None and reach(samples, c.columns) >= SHOWN
         ] or unexcited
     starts = _starts(samples, effect, location)
-    columns = samples.columns(lambda s: effect.trace(s, location, starts), len(starts))
-    return unexcited if columns is None or reach(samples, columns) < SHOWN else (starts, columns)
+    weights = None
+    if isinstance(effect, SpannedEffect):
+        subject = samples.filtered_logs[0].signals.subject
+        weights = effect.in_span(location, subject, starts)
+        count, tell = weights.shape[1], effect.span
+        columns = samples.columns(lambda s: tell(s, location), count, effect.inertial)
+    else:
+        columns = samples.columns(
+            lambda s: effect.trace(s, location, starts), len(starts), effect.inertial
+        )
+    if columns is None:
+        return unexcited
+    found = Starts(starts, columns, weights)
+    return unexcited if reach(samples, found.traces) < SHOWN else found
 
 
 def lacking(effect: Effect, location: str, signals: Sequence[Signals]) -> str:

@@ -59,8 +59,6 @@ class Search:
         self.promises = Promises(evidence, rules, self.traces, threads)
         self.fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.fits.nothing}
         """By the names of their candidates."""
-        self.again: set[tuple[Name, ...]] = set()
-        """Names of those that were fitted a second time."""
 
     def result(self) -> Result:
         """Search forward until no further cause is worth its prior, drop what is not, and put
@@ -173,7 +171,7 @@ class Search:
     def best_of(self, promises: Sequence[Promise], current: Hypothesis) -> Hypothesis | None:
         """The best fit of an effect at a place beside a hypothesis, from several starts."""
         known = self._known((*current.candidates, promises[0]))
-        if known is not None and not self._promising(known, promises[0], current):
+        if known is not None:
             return known
         linear = WEIGHED[promises[0].effect].linear
         apart: list[Candidate] = []
@@ -184,18 +182,7 @@ class Search:
         fits_of_starts = [
             self.fits.fit((*current.candidates, one), current.scales) for one in apart
         ]
-        fits_of_starts += [known] if known else []
         return max(fits_of_starts, key=lambda one: one.score, default=None)
-
-    def _promising(self, known: Hypothesis, promise: Promise, current: Hypothesis) -> bool:
-        """Whether a hypothesis that was fitted beside others, or linearised elsewhere, is worth one
-        more fit.
-        """
-        expected = current.score - current.log_prior + promise.gain + known.log_prior
-        if known.names in self.again or expected < known.score + self.rules.search.again:
-            return False
-        self.again.add(known.names)
-        return True
 
     def everywhere(
         self, promises: Mapping[Name, Sequence[Promise]], current: Hypothesis
@@ -272,8 +259,8 @@ def _traced(evidence: Evidence, place: tuple[str, str]) -> list[screen.Traces]:
         ]
         whole = [evidence.acting(one, True) for one in whole]
     else:
-        own = whole[0], whole[1][:, :count]
-        if screen.reach(evidence.tests, own[1]) < screen.SHOWN:
+        own = replace(whole, columns=whole.columns[:, :count])
+        if screen.reach(evidence.tests, own.traces) < screen.SHOWN:
             own = []
     if not own:
         own = screen.NotJudged(*place, screen.UNEXCITED)

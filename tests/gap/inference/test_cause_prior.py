@@ -58,6 +58,14 @@ def test_one_place_has_no_other_to_be_like():
     assert prior(1.0, location="hip") == pytest.approx(prior(-1.0, location="hip"))
 
 
+def test_what_changed_since_the_references_is_rarer_than_what_a_model_lacks():
+    beside = SimpleNamespace(**{**vars(EVIDENCE), "references": (None,)})
+    rarer = np.log(RULES.cause.changed / RULES.cause.probability)
+    assert prior(9.0, evidence=beside) - prior(9.0) == pytest.approx(rarer)
+    standing = prior(9.0, standing=True, evidence=beside)
+    assert standing == pytest.approx(prior(9.0, standing=True))
+
+
 def test_what_stands_in_the_references_may_be_a_usual_error():
     """A small error that both sessions have is one, so that no change stands in its place."""
     usual = {("coulomb_friction", "hip", 0): 1.0}

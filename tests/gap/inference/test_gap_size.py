@@ -8,8 +8,10 @@ from hyperleg_design.gap.inference.gap_size import GapSize
 COUNT = 40
 
 
-def size(before, after, noise, residuals=("motion", "motion")):
-    """Of channels of the same number of samples, whose squares are given."""
+def size(before, after, noise, residuals=("motion", "motion"), shown=None):
+    """Of channels of the same number of samples, whose squares are given; causes show in all, or in
+    those that are `shown`.
+    """
     number = len(residuals) * COUNT
     channels = tuple(
         SimpleNamespace(residual=kind, under_test=np.arange(i * COUNT, (i + 1) * COUNT))
@@ -21,7 +23,10 @@ def size(before, after, noise, residuals=("motion", "motion")):
         channels=channels, samples=samples, tests=tests, weight=np.full(number, 4.0)
     )
     spread = lambda squares: np.repeat(np.sqrt(squares), COUNT) / 4.0  # noqa: E731
-    held = SimpleNamespace(before=spread(before), after=spread(after), noise=spread(noise))
+    trace = np.repeat(np.ones(len(residuals)) if shown is None else np.array(shown, float), COUNT)
+    held = SimpleNamespace(
+        before=spread(before), after=spread(after), noise=spread(noise), trace=trace
+    )
     return GapSize(evidence, held, *(np.array(one, float) for one in (before, after, noise)))
 
 
@@ -40,6 +45,14 @@ def test_no_gap_is_closed_where_there_is_none_and_never_more_than_all():
 
 def test_causes_that_make_it_worse_close_less_than_nothing():
     assert size([4.0, 4.0], [9.0, 9.0], [1.0, 1.0]).closed == pytest.approx(-1.0)
+
+
+def test_the_gap_of_causes_is_that_of_the_channels_in_which_they_show():
+    squares = [25.0, 400.0], [1.0, 400.0], [1.0, 1.0]
+    assert size(*squares, shown=[True, False]).counts.tolist() == [True, False]
+    assert size(*squares, shown=[True, False]).closed == 1.0
+    assert size(*squares, shown=[False, False]).counts.tolist() == [False, True]
+    assert size(*squares, shown=[False, False]).closed == 0.0
 
 
 def test_only_channels_in_the_unit_of_the_largest_excess_count():

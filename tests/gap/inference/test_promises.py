@@ -12,7 +12,7 @@ from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
 from hyperleg_design.gap.inference.promises import LARGEST, Promises
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.screen import NotJudged
+from hyperleg_design.gap.inference.screen import NotJudged, Starts
 from hyperleg_design.gap.inference.search import traces_of
 from tests.gap.inference.channels.test_channel import made
 
@@ -32,7 +32,7 @@ def test_gains_are_those_of_all_columns_at_once(constant, alone):
     linear, starts = rng.standard_normal((2, size)), rng.standard_normal((3, tested))
     traces = {
         ("coulomb_friction", "knee", False): [unbounded("coulomb_friction", "knee", linear)],
-        ("command_delay", "robot", False): (np.arange(3.0)[:, None], starts),
+        ("command_delay", "robot", False): Starts(np.arange(3.0)[:, None], starts),
         ("payload", "foot", False): NotJudged("payload", "foot", "no motion"),
     }
     acting = unbounded(
@@ -73,8 +73,8 @@ def test_a_start_that_scales_torques_is_charged_for_it_as_a_cause_is(search):
     evidence = search.evidence
     promises = Promises(evidence, search.rules, traces_of(evidence, places, 1))
     name = (effect, motor, False)
-    starts, _ = promises.traces[name]
-    for start, scaled in zip(starts, promises.scaling(name), strict=True):
+    starts = promises.traces[name]
+    for start, scaled in zip(starts.values, promises.scaling(name), strict=True):
         for size in (0.5, 1.0, 3.0):
             scale = 1 + size * (start[0] - 1)
             assert scaled.log(np.array([size])) == pytest.approx(scaled.number * np.log(scale))
@@ -82,5 +82,7 @@ def test_a_start_that_scales_torques_is_charged_for_it_as_a_cause_is(search):
 
 def test_a_start_that_scales_no_torque_is_charged_nothing(search):
     name = ("command_delay", "robot", False)
-    promises = Promises(search.evidence, search.rules, {name: (np.ones((3, 1)), np.ones((3, 4)))})
+    promises = Promises(
+        search.evidence, search.rules, {name: Starts(np.ones((3, 1)), np.ones((3, 4)))}
+    )
     assert promises.scaling(name) == [None, None, None]

@@ -42,9 +42,28 @@ def test_a_linear_effect_is_traced_by_its_columns_and_another_by_its_starts(foun
     (friction,) = trace(found.samples, EFFECTS["viscous_friction"], "knee")
     assert isinstance(friction, Cause)
     assert reach(found.samples, friction.columns) > 0
-    starts, columns = trace(found.samples, EFFECTS["backlash"], "m_back")
-    assert len(starts) == len(columns)
-    assert columns.shape[1] == len(found.samples.value)
+    starts = trace(found.samples, EFFECTS["backlash"], "m_back")
+    assert len(starts.values) == len(starts.traces)
+    assert starts.columns.shape[1] == len(found.samples.value)
+
+
+def test_starts_of_an_effect_with_a_span_have_the_traces_of_their_values(found):
+    effect = EFFECTS["payload"]
+    link = effect.locations(found.signals[0].subject)[-1]
+    starts = trace(found.samples, effect, link)
+    assert starts.columns.shape == (10, len(found.samples.value))
+    exact = found.samples.columns(
+        lambda s: effect.trace(s, link, starts.values), len(starts.values), effect.inertial
+    )
+    np.testing.assert_allclose(starts.traces, exact, atol=1e-9 * np.abs(exact).max())
+
+
+def test_torques_over_accelerations_count_as_far_as_drives_feel_them(found):
+    samples, effect = found.samples, EFFECTS["rotor_inertia"]
+    values = np.array([[0.01]])
+    whole = samples.columns(lambda s: effect.trace(s, "m_back", values), 1)
+    counted = samples.columns(lambda s: effect.trace(s, "m_back", values), 1, effect.inertial)
+    np.testing.assert_array_equal(counted, whole * samples.felt)
 
 
 def test_samples_under_test_come_first_and_have_the_same_trace(found):

@@ -37,7 +37,7 @@ class RotorInertia(MotorTorque):
     """
 
     identifier: ClassVar[str] = "rotor_inertia"
-    steady: ClassVar[bool] = True
+    inertial: ClassVar[bool] = True
     nuisance_rank: ClassVar[int] = 1
     described: ClassVar[bool] = True
     summary: ClassVar[str] = "a rotor (and its gear) has more or less inertia than the model"

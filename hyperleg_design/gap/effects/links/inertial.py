@@ -15,6 +15,7 @@ from typing_extensions import override
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.excitation import SWINGING, Need
+from hyperleg_design.gap.effects.spanned import SpannedEffect
 from hyperleg_design.gap.model.body_inertia import add_inertia
 from hyperleg_design.gap.model.mechanism import BASE
 from hyperleg_design.gap.model.subject import Subject
@@ -28,8 +29,9 @@ if TYPE_CHECKING:
 
 LARGEST_LOSS = 0.95
 """Share of a link's own mass that may be missing at most."""
-RIDGE = 1e-3
-"""Damping of a linear fit that finds a start, over the regressor's own size."""
+OF_CARRIED, REACH = 0.2, 0.05
+"""Share of what moves with a link that is added to it in a linear fit, and how far from the link's
+origin, at least [m] (assumed)."""
 
 
 class InertialEffect(Effect):
@@ -41,7 +43,7 @@ class InertialEffect(Effect):
 
     kind: ClassVar[str] = "link"
     needs: ClassVar[Need] = SWINGING
-    steady: ClassVar[bool] = True
+    inertial: ClassVar[bool] = True
 
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
@@ -70,9 +72,17 @@ class InertialEffect(Effect):
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        added = self._added(location, signals.subject, values)
+        return self._traces(signals, location, added)
+
+    def _added(self, location: str, subject: Subject, values: np.ndarray) -> np.ndarray:
+        own = subject.tree.link_inertial[subject.tree.link(location)]
+        return self.added(own, np.atleast_2d(np.asarray(values, float)))
+
+    def _traces(self, signals: Signals, location: str, added: np.ndarray) -> dict[str, np.ndarray]:
+        """Of inertial parameters added to a link `(k, 10)`."""
         tree = signals.subject.tree
         link = tree.link(location)
-        added = self.added(tree.link_inertial[link], np.atleast_2d(np.asarray(values, float)))
         found = {}
         if tree.link_joint[link] != BASE:
             found["motion"] = np.einsum(
@@ -109,6 +119,41 @@ class OwnInertiaEffect(InertialEffect):
         return tuple(compress(subject.tree.links, subject.tree.link_inertial[:, 0] > 0))
 
 
+class MomentsEffect(InertialEffect, SpannedEffect):
+    """One that is not linear in its own parameters; its traces are sums of those of the ten."""
+
+    @override
+    def span(self, signals: Signals, location: str) -> dict[str, np.ndarray]:
+        """Traces of the ten parameters."""
+        return self._traces(signals, location, np.diag(_scale(signals.subject, location)))
+
+    @override
+    def in_span(self, location: str, subject: Subject, values: np.ndarray) -> np.ndarray:
+        """What it adds, over the usual sizes of the ten parameters."""
+        return self._added(location, subject, values) / _scale(subject, location)
+
+    @override
+    def nearest(self, location: str, subject: Subject, sizes: np.ndarray) -> np.ndarray:
+        """Values that add such a mass and first moment."""
+        low, high = self.bounds(location, subject)
+        whole = np.asarray(sizes, float) * _scale(subject, location)
+        found = np.clip(self.adding(location, subject, whole[:4]), low, high)
+        return np.asarray(found[self._added(location, subject, found).any(1)])
+
+    @abstractmethod
+    def adding(self, location: str, subject: Subject, moments: np.ndarray) -> np.ndarray:
+        """Values that add a mass and first moment to a link, or some of these.
+
+        Args:
+            location: one of `locations`.
+            subject: the robot.
+            moments: mass and first moment `(4,)`.
+
+        Returns:
+            `(s, parameters)`, each worth a try.
+        """
+
+
 @dataclass(frozen=True, eq=False)
 class AddedInertia(Alteration):
     """Inertial parameters added to a body of the model."""
@@ -129,32 +174,12 @@ class AddedInertia(Alteration):
             add_inertia(model, self.body, added)
 
 
-def fitted(signals: Signals, link: str, part: slice) -> np.ndarray | None:
-    """Some of the first four inertial parameters that a linear fit to a log adds to a link; None
-    where it shows none of them. What a floating base carries is in no joint's torque, but in what
-    the ground must give more.
-
-    Args:
-        signals: a conditioned log, `t` ticks.
-        link: name of the link.
-        part: which of the first four are wanted.
-
-    Returns:
-        The parameters, or None.
-    """
-    tree = signals.subject.tree
-    on_base = tree.link_joint[tree.link(link)] == BASE
-    residual = signals.residual.get("base" if on_base else "motion")
-    if residual is None:
-        return None
-    known = np.isfinite(residual) & signals.valid[:, None]
-    whole = (regressor.base_regressor if on_base else regressor.link_regressor)(signals, link)
-    columns, values = whole[..., :4][known][:, part], residual[known]
-    square = columns.T @ columns
-    if not len(values) or np.trace(square) <= 0:
-        return None
-    ridge = RIDGE * np.trace(square) / 4 * np.eye(len(square))
-    return np.asarray(np.linalg.solve(square + ridge, columns.T @ values))
+def _scale(subject: Subject, link: str) -> np.ndarray:
+    """Usual size of each of the ten parameters `(10,)`."""
+    own = subject.tree.link_inertial[subject.tree.link(link)]
+    mass = OF_CARRIED * max(carried_mass(subject, link), 1e-3)
+    reach = max(REACH, float(np.linalg.norm(own[1:4])) / float(own[0]) if own[0] > 0 else 0.0)
+    return mass * np.array([1.0, *[reach] * 3, *[reach**2] * 6])
 
 
 def least_mass(subject: Subject, link: str) -> float:

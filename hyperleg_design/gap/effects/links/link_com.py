@@ -9,7 +9,7 @@ import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.families import INERTIAL
-from hyperleg_design.gap.effects.links.inertial import OwnInertiaEffect, fitted
+from hyperleg_design.gap.effects.links.inertial import MomentsEffect, OwnInertiaEffect
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.model.mechanism import inertial_parameters, mass_properties
 from hyperleg_design.gap.model.subject import Subject
@@ -21,7 +21,7 @@ metres."""
 SOURCE = "a centimetre: motors and cables placed by eye in the drawing (assumed)"
 
 
-class LinkCom(OwnInertiaEffect):
+class LinkCom(OwnInertiaEffect, MomentsEffect):
     """A link's mass moved as a whole in the link's frame; inertia about the centre of mass
     stays.
     """
@@ -51,18 +51,18 @@ class LinkCom(OwnInertiaEffect):
         """Of the moved link less the link."""
         mass, com, inertia = mass_properties(own)
         as_given = inertial_parameters(mass, com, inertia)
-        return np.stack([inertial_parameters(mass, com + v, inertia) - as_given for v in values])
+        moved = [inertial_parameters(mass, com + v, inertia) - as_given for v in values]
+        return np.array(moved).reshape(-1, len(own))
+
+    @override
+    def adding(self, location: str, subject: Subject, moments: np.ndarray) -> np.ndarray:
+        """The shift that adds a first moment."""
+        own = subject.tree.link_inertial[subject.tree.link(location)]
+        return np.asarray(moments[None, 1:4] / own[0])
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """The shift that a linear fit of the first moment to the log finds, and the usual one along
-        each axis.
-        """
-        tree, usual = signals.subject.tree, self.usual(location, signals.subject)
+        """The usual shift along each axis."""
+        usual = np.diag(self.usual(location, signals.subject))
         low, high = self.bounds(location, signals.subject)
-        tried = [*np.diag(usual), *-np.diag(usual)]
-        moment = fitted(signals, location, slice(1, 4))
-        if moment is not None:
-            tried.insert(0, moment / tree.link_inertial[tree.link(location), 0])
-        found = np.clip(tried, low, high)
-        return np.asarray(found[found.any(1)])
+        return np.clip(np.concatenate([usual, -usual]), low, high)

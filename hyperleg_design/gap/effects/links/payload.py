@@ -9,9 +9,9 @@ import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.links.inertial import (
-    InertialEffect,
+    REACH,
+    MomentsEffect,
     carried_mass,
-    fitted,
     least_mass,
 )
 from hyperleg_design.gap.effects.links.link_mass import DRAWN
@@ -37,7 +37,7 @@ COM_X_SOURCE = "centre of mass in the link's frame: a hand's breadth (assumed)"
 GYRATION_SOURCE = "of a body 10 cm across (assumed)"
 
 
-class Payload(InertialEffect):
+class Payload(MomentsEffect):
     """A body fixed to a link, over what the model or the log's metadata already put there, equally
     hard to turn about any axis.
 
@@ -127,15 +127,19 @@ class Payload(InertialEffect):
         )
 
     @override
-    def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """The mass and first moment that a linear fit to the log finds, and the usual mass where
-        `example` has it.
+    def adding(self, location: str, subject: Subject, moments: np.ndarray) -> np.ndarray:
+        """A load of that mass and first moment; and one of that moment which is as far away as
+        `example` has it, where motions hardly tell the mass.
         """
+        mass, moment = float(moments[0]), moments[1:]
+        away = float(np.linalg.norm(self.example(location, subject)[1:4]))
+        masses = mass, float(np.copysign(np.linalg.norm(moment) / max(away, REACH), mass))
+        return np.array([[m, *(moment / m), 0.0] for m in masses if m]).reshape(-1, 5)
+
+    @override
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """The usual mass where `example` has it, and as much less."""
         low, high = self.bounds(location, signals.subject)
         shown = self.example(location, signals.subject)
-        tried = [shown, shown * np.array([-1.0, 1.0, 1.0, 1.0, 1.0])]
-        first = fitted(signals, location, slice(4))
-        if first is not None and abs(first[0]) > 1e-3 * shown[0]:
-            tried.insert(0, np.array([first[0], *(first[1:] / first[0]), 0.0]))
-        found = np.clip(tried, low, high)
+        found = np.clip([shown, shown * np.array([-1.0, 1.0, 1.0, 1.0, 1.0])], low, high)
         return np.asarray(found[found[:, 0] != 0])

@@ -32,6 +32,8 @@ class Flexible(JointEffect):
     listed: ClassVar[bool] = False
     flexible: ClassVar[bool] = True
     linear: ClassVar[bool] = True
+    rare: ClassVar[float] = -3.0
+    """Assumed: one fault in twenty is of a kind that nobody has listed."""
     inputs: ClassVar[Mapping[str, str]]
     """By name, in words that follow on `sentence`."""
     sentence: ClassVar[str]

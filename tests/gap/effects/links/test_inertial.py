@@ -5,7 +5,6 @@ Pinocchio.
 from __future__ import annotations
 
 import copy
-from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -142,35 +141,37 @@ def test_usual_masses_follow_the_robot(arm):
     assert effect("payload").example("forearm", arm.subject)[3] == pytest.approx(1.5 * 0.196)
 
 
-def test_a_linear_fit_finds_a_payload_that_hangs_there(arm):
-    import dataclasses
-
-    values = np.array([2.0, 0.05, -0.02, 0.15, 0.0])
-    one = effect("payload")
-    residual = {
-        **arm.residual,
-        "motion": arm.residual["motion"]
-        + one.trace(arm, "wrist_1_link", values[None])["motion"][0],
-    }
-    loaded = dataclasses.replace(arm, residual=residual)
-    start = one.starts(loaded, "wrist_1_link")[0]
-    assert start[0] == pytest.approx(2.0, rel=0.15)
-    np.testing.assert_allclose(start[1:], values[1:], atol=0.05)
+@pytest.mark.parametrize("name", ["payload", "link_com"])
+@pytest.mark.parametrize("values", [[1.2, 0.08, -0.06, 0.1, 0.01], [1.2, -0.05, 0.07, 0.02, 0.0]])
+def test_a_trace_is_a_sum_of_its_span(name, values, arm):
+    one, link = effect(name), "forearm"
+    truth = np.array([values if name == "payload" else values[1:4]])
+    weights = one.in_span(link, arm.subject, truth)
+    spanned = np.tensordot(weights, one.span(arm, link)["motion"], 1)
+    np.testing.assert_allclose(spanned, one.trace(arm, link, truth)["motion"], atol=1e-9)
 
 
-def test_a_linear_fit_finds_a_payload_on_a_floating_base(biped_runs):
-    """No joint feels it directly; the ground must give more."""
-    log, one = biped_runs["standing"], effect("payload")
-    standing = condition(log, load_subject(None, [log]))
-    base = one.locations(standing.subject)[0]
-    values = np.array([3.0, 0.06, -0.04, 0.1, 0.0])
-    trace = one.trace(standing, base, values[None])
-    residual = standing.residual | {"base": trace["base"][0]}
-    start = one.starts(replace(standing, residual=residual), base)[0]
-    assert start[0] == pytest.approx(3.0, rel=0.05)
-    np.testing.assert_allclose(start[1:3], values[1:3], atol=0.02)
-    told = {name: rows for name, rows in standing.residual.items() if name != "base"}
-    assert len(one.starts(replace(standing, residual=told), base)) == 2
+@pytest.mark.parametrize("name", ["payload", "link_com"])
+@pytest.mark.parametrize("values", [[1.2, 0.08, -0.06, 0.1, 0.0], [1.2, -0.05, 0.07, 0.02, 0.0]])
+def test_values_with_a_mass_and_moment_are_found_from_their_sum(name, values, arm):
+    one, link = effect(name), "forearm"
+    truth = np.array([values if name == "payload" else values[1:4]])
+    weights = one.in_span(link, arm.subject, truth)[0]
+    np.testing.assert_allclose(one.nearest(link, arm.subject, weights)[0], truth[0], atol=1e-9)
+
+
+def test_a_moment_whose_mass_no_motion_tells_is_that_of_a_load_at_its_usual_place(arm):
+    one, link = effect("payload"), "forearm"
+    usual = one.example(link, arm.subject)
+    weights = one.in_span(link, arm.subject, usual[None])[0] * ([0.01] + [1.0] * 9)
+    second = one.nearest(link, arm.subject, weights)[1]
+    np.testing.assert_allclose(second, usual, atol=1e-9)
+
+
+def test_without_any_mass_or_moment_no_start_is_left(arm):
+    for name in ("payload", "link_com"):
+        nearest = effect(name).nearest("forearm", arm.subject, np.zeros(10))
+        assert effect(name).in_span("forearm", arm.subject, nearest).shape == (0, 10)
 
 
 def test_a_load_out_of_its_links_reach_is_rather_none(arm):
@@ -189,24 +190,3 @@ def test_bounds_leave_something_of_a_link(arm):
     assert effect("link_mass").bounds("forearm", arm.subject)[0, 0] == pytest.approx(-0.95 * 2.3)
     assert effect("payload").bounds("forearm", arm.subject)[0, 0] == pytest.approx(-0.95 * 2.3)
     assert effect("payload").bounds("flange", arm.subject)[0, 0] == 0.0
-
-
-@pytest.mark.parametrize("name", ["payload", "link_com"])
-@pytest.mark.parametrize("values", [[1.2, 0.08, -0.06, 0.1, 0.0], [1.2, -0.05, 0.07, 0.02, 0.0]])
-def test_a_start_is_near_what_is_there_wherever_it_lies(name, values, arm):
-    one, link = effect(name), "forearm"
-    truth = np.array(values if name == "payload" else values[1:4])
-    wrong = replace(
-        arm, residual=arm.residual | {"motion": one.trace(arm, link, truth[None])["motion"][0]}
-    )
-    first = one.starts(wrong, link)[0]
-    there, found = one.trace(arm, link, np.stack([truth, first]))["motion"]
-    assert np.square(there - found).mean() < 0.05 * np.square(there).mean()
-
-
-def test_without_a_residual_the_usual_starts_are_left(arm):
-    for name in ("payload", "link_com"):
-        still = replace(
-            arm, residual=arm.residual | {"motion": np.full_like(arm.residual["motion"], np.nan)}
-        )
-        assert len(effect(name).starts(still, "forearm")) == (2 if name == "payload" else 6)
