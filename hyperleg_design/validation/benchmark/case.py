@@ -16,7 +16,7 @@ import pyarrow.parquet as pq
 
 from hyperleg_design.errors import InputError
 
-SUITES = ("real", "newcomers", "blind")
+SUITES = ("real", "drawn", "newcomers", "blind")
 SPLITS = ("development", "held out")
 KINDS = ("nothing", "single", "everywhere", "several", "outside")
 """Of cases: nothing wrong, one fault, one effect at several joints, several effects, an effect that

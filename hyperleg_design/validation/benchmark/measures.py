@@ -36,8 +36,7 @@ def measures(rows: Sequence[Row]) -> list[Measure]:
     Args:
         rows: of any split; measures without a case are left out.
     """
-    found = [*_real(rows), *_newcomers(rows), *_blind(rows)]
-    return [measure for measure in found if measure.of]
+    return [measure for measure in _all(rows) if measure.of]
 
 
 def _share(name: str, rows: Iterable[Row], hit: Callable[[Row], bool], target: str = "") -> Measure:
@@ -125,8 +124,9 @@ def _real(rows: Sequence[Row]) -> list[Measure]:
     ]
 
 
-def _newcomers(rows: Sequence[Row]) -> list[Measure]:
-    own = [row for row in rows if row["suite"] == "newcomers"]
+def _added(suite: str, rows: Sequence[Row]) -> list[Measure]:
+    """Of a suite whose faults are put into plants or logs."""
+    own = [row for row in rows if row["suite"] == suite]
     single = [row for row in own if row["kind"] == "single"]
     joints = [row for row in own if row["kind"] == "everywhere"]
     several = [row for row in own if row["kind"] == "several"]
@@ -134,28 +134,28 @@ def _newcomers(rows: Sequence[Row]) -> list[Measure]:
     outside = [row for row in own if row["kind"] == "outside"]
     faults = [*single, *joints, *several]
     return [
-        _share("newcomers, one effect: right or honest equivalent, first", single, GOOD),
+        _share(f"{suite}, one effect: right or honest equivalent, first", single, GOOD),
         _share(
-            "newcomers, one effect at several joints: all named",
+            f"{suite}, one effect at several joints: all named",
             joints,
             _flag("all_named"),
             ">= 80 %",
         ),
-        _share("newcomers, two effects: both named", several, _flag("all_named")),
+        _share(f"{suite}, two effects: both named", several, _flag("all_named")),
         _share(
-            "newcomers, right or equivalent: no untrue cause beside",
+            f"{suite}, right or equivalent: no untrue cause beside",
             _known("untrue_beside", faults),
             lambda row: row["score"]["untrue_beside"] is False,
         ),
-        _share("newcomers, nothing wrong: `none`", healthy, _outcome("right")),
-        _share("newcomers, outside the catalogue: said so", outside, _outcome("right")),
-        _share("newcomers, faults: confident wrong cause", faults, _flag("confident_wrong")),
+        _share(f"{suite}, nothing wrong: `none`", healthy, _outcome("right")),
+        _share(f"{suite}, outside the catalogue: said so", outside, _outcome("right")),
+        _share(f"{suite}, faults: confident wrong cause", faults, _flag("confident_wrong")),
         _share(
-            "newcomers, right: the value inside its 95 % interval",
+            f"{suite}, right: the value inside its 95 % interval",
             _known("inside", faults),
             _flag("inside"),
         ),
-        _share("newcomers: errors", own, _outcome("error")),
+        _share(f"{suite}: errors", own, _outcome("error")),
     ]
 
 
@@ -231,7 +231,7 @@ def table(rows: Sequence[Row]) -> str:
 
 
 def _all(rows: Sequence[Row]) -> list[Measure]:
-    return [*_real(rows), *_newcomers(rows), *_blind(rows)]
+    return [*_real(rows), *_added("drawn", rows), *_added("newcomers", rows), *_blind(rows)]
 
 
 def _cell(measure: Measure) -> str:

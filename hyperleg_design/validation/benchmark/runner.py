@@ -27,6 +27,7 @@ from hyperleg_design.validation.newcomers.cases import newcomer_cases
 from hyperleg_design.validation.newcomers.crane_cases import crane_cases
 from hyperleg_design.validation.newcomers.quadruped_cases import quadruped_cases
 from hyperleg_design.validation.real.cases import real_cases
+from hyperleg_design.validation.real.drawn import drawn_cases
 from hyperleg_design.validation.spread import spread
 from hyperleg_design.writing import MARKER, check_output_folder, write_json, write_text
 
@@ -54,7 +55,8 @@ class Outcome:
 
 def all_cases() -> list[Case]:
     """Every case of this version."""
-    cases = [*real_cases(), *newcomer_cases(), *crane_cases(), *quadruped_cases(), *blind_cases()]
+    made = real_cases, drawn_cases, newcomer_cases, crane_cases, quadruped_cases, blind_cases
+    cases = [case for some in made for case in some()]
     names = [case.name for case in cases]
     assert len(set(names)) == len(names), "names of cases are unique"
     return cases
