@@ -13,7 +13,6 @@ import pytest
 
 from hyperleg_design.simulation.alteration import (
     Alteration,
-    Limits,
     Live,
     damps_motors,
     edited,
@@ -21,6 +20,7 @@ from hyperleg_design.simulation.alteration import (
     overrides,
     resistance,
 )
+from hyperleg_design.simulation.drives.limits import Limits
 from hyperleg_design.simulation.drives.machine import machine_of
 from hyperleg_design.simulation.drives.told import TOLD
 from hyperleg_design.simulation.drives.two_mass import Belt

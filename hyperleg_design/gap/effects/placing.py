@@ -26,7 +26,7 @@ from hyperleg_design.gap.model.machine import machine_of
 from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation import alteration
+from hyperleg_design.simulation.drives import limits
 
 SIDES = ("encoders at the joints", "encoders at the rotors")
 """Choices of the parameter `side`: whose positions logs and controllers know."""
@@ -246,7 +246,7 @@ def limited(
     """
     subject = signals.subject
     stall, free = line or (subject.stall_torque[motor], subject.no_load_speed[motor])
-    return alteration.limited(
+    return limits.limited(
         torque,
         signals.motor_speed[:, motor],
         np.minimum(subject.torque_limit[motor], peak),

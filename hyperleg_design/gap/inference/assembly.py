@@ -20,6 +20,7 @@ from hyperleg_design.gap.inference import noise_model, nuisance, nuisance_traces
 from hyperleg_design.gap.inference.channels.channel import Channel
 from hyperleg_design.gap.inference.channels.discrepancy import MOTORS, load, shapes
 from hyperleg_design.gap.inference.endogenous import Factor
+from hyperleg_design.gap.inference.felt import SLOWEST_BANDS, felt_share
 from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import Samples, gather
@@ -145,7 +146,7 @@ class _Set:
             loads.append(
                 sum(
                     float(np.mean(own[band == b] ** 2))
-                    for b in range(noise_model.SLOWEST_BANDS)
+                    for b in range(SLOWEST_BANDS)
                     if (band == b).any()
                 )
             )
@@ -224,7 +225,7 @@ def _set(
 ) -> _Set:
     filtered_logs = [filtering.filtered_log(one, resting.sticking(one)) for one in signals]
     floors = [noise_model.expected(one, rules.noise) for one in filtered_logs]
-    felt = [[noise_model.felt(log, row) for row in range(len(log.rows))] for log in filtered_logs]
+    felt = [[felt_share(log, row) for row in range(len(log.rows))] for log in filtered_logs]
     names = [one.log.metadata.session or f"\0{i}" for i, one in enumerate(signals)]
     order = list(dict.fromkeys(names))
     sessions = [order.index(name) for name in names]

@@ -65,7 +65,7 @@ class GapSize:
         """Channels that count, all in the unit of the largest `(channels,)` of bool."""
         channels = self.evidence.channels
         units = [RESIDUALS[channel.residual][1] for channel in channels]
-        shown = np.array([bool(self.held.trace[one.under_test].any()) for one in channels])
+        shown = np.array([bool(self.held.trace[each.under_test].any()) for each in channels])
         shown |= not shown.any()
         largest = int(np.argmax(np.where(shown, self.excess, -1.0)))
         same = np.array([unit == units[largest] for unit in units])

@@ -33,8 +33,6 @@ FAST = 10.0
 """Speed that a motor is made for where nobody gives its limits [rad/s]; assumed."""
 AT_MOST, ENOUGH = 1.5, 16
 """Noise over all that a band shows, at most, and samples that tell what it shows."""
-SLOWEST_BANDS = 3
-"""Bands of a channel whose load sizes its discrepancy: in faster ones it is mostly noise."""
 POSTURE = 0.05
 """Time in which a posture, and its inertia, hardly changes [s] (assumed)."""
 FEWEST = 64
@@ -268,32 +266,6 @@ def of_acceleration(filtered_log: FilteredLog, row: int) -> tuple[np.ndarray, np
         for b in bands
     ]
     return np.concatenate(feigned), np.concatenate(rate)
-
-
-def felt(filtered_log: FilteredLog, row: int) -> np.ndarray:
-    """Share of the torque that fast motion needs which the drives' torque shows: what sensors or
-    belts add to accelerations, no motor feels.
-
-    Args:
-        filtered_log: of one log.
-        row: one of its rows.
-
-    Returns:
-        By sample, from 0 to 1, the same all over a band `(samples,)`; 1 of slow bands and of rows
-        that are no joints.
-    """
-    signals, one = filtered_log.signals, filtered_log.rows[row]
-    band = filtered_log.labels(row)[0]
-    found = np.ones(len(band))
-    if one.residual_name != "motion":
-        return found
-    columns = signals.rigid[:, one.column], signals.residual["motion"][:, one.column]
-    needed, left = filtered_log.sample(row, np.stack(columns))
-    for fast in np.unique(band[band >= SLOWEST_BANDS]).tolist():
-        mine = band == fast
-        square = max(float(needed[mine] @ needed[mine]), 1e-300)
-        found[mine] = np.clip(1 + float(left[mine] @ needed[mine]) / square, 0.0, 1.0)
-    return found
 
 
 def of_load(filtered_log: FilteredLog, row: int) -> np.ndarray:

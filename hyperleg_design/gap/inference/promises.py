@@ -252,11 +252,12 @@ class Promises:
             weights = np.concatenate([effect.in_span(name[1], subject, nearest), starts.weights])
             turn = block_diag(np.eye(rows), weights)
             products, scaling = turn @ products @ turn.T, [None] * len(values)
-        found = []
+        promises = []
         for number, (start, scaled) in enumerate(zip(values, scaling, strict=True)):
             solution = self._solved(base, products, np.array([rows + number]), None, scaled)
-            found.append(Promise(*name, number, solution.gain - base.gain, tuple(start.tolist())))
-        return found
+            gain = solution.gain - base.gain
+            promises.append(Promise(*name, number, gain, tuple(start.tolist())))
+        return promises
 
     def _solved(
         self,

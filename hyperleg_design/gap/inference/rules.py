@@ -92,7 +92,8 @@ class CauseRules:
     (assumed)."""
     changed: float = 0.05
     """That anything has changed since the references, and that one thing more has [-] (developed:
-    of faults drawn on real logs true causes lead by 5 nats and more, false ones by 1 to 4)."""
+    of faults drawn on logs of a real robot, true causes led by 5 nats and more, false ones by 1 to
+    4)."""
     again: float = 0.5
     """That a further cause is an effect that acts at another place already [-]: gears, drives and
     settings of one kind fail alike (assumed)."""

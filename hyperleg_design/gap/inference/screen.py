@@ -169,16 +169,16 @@ def trace(samples: Samples, effect: Effect, location: str) -> Traces:
     if isinstance(effect, SpannedEffect):
         subject = samples.filtered_logs[0].signals.subject
         weights = effect.in_span(location, subject, starts)
-        count, tell = weights.shape[1], effect.span
-        columns = samples.columns(lambda s: tell(s, location), count, effect.inertial)
+        count, span = weights.shape[1], effect.span
+        columns = samples.columns(lambda s: span(s, location), count, effect.inertial)
     else:
         columns = samples.columns(
             lambda s: effect.trace(s, location, starts), len(starts), effect.inertial
         )
     if columns is None:
         return unexcited
-    found = Starts(starts, columns, weights)
-    return unexcited if reach(samples, found.traces) < SHOWN else found
+    begun = Starts(starts, columns, weights)
+    return unexcited if reach(samples, begun.traces) < SHOWN else begun
 
 
 def lacking(effect: Effect, location: str, signals: Sequence[Signals]) -> str:

@@ -16,8 +16,9 @@ from typing import ClassVar
 import numpy as np
 
 from hyperleg_design.gap.model.subject import Subject
-from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
+from hyperleg_design.simulation.alteration import Alteration, Live, Tick
 from hyperleg_design.simulation.drives.actuation import applied
+from hyperleg_design.simulation.drives.limits import Limits
 
 
 def over_nominal(subject: Subject, voltage: np.ndarray | None) -> np.ndarray:

@@ -32,7 +32,7 @@ from hyperleg_design.gap.signals.limit_cycle import limit_cycle
 from hyperleg_design.gap.signals.sensed import sensed_velocity
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.smoothing import Smooth, smooth
-from hyperleg_design.simulation import alteration
+from hyperleg_design.simulation.drives import limits
 
 EDGE = 4.0
 """Radians of the slowest smoother's crossover that are left out beside gaps and at the ends of a
@@ -235,7 +235,7 @@ def limited_torque(
         The torques [Nm], `(t, m)`.
     """
     peak, stall, free = subject.torque_limit, subject.stall_torque, subject.no_load_speed
-    return alteration.limited(torque, speed, peak, stall, free, over_nominal(subject, voltage))
+    return limits.limited(torque, speed, peak, stall, free, over_nominal(subject, voltage))
 
 
 def _command(

@@ -17,8 +17,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick, overrides
+from hyperleg_design.simulation.alteration import Alteration, Live, Tick, overrides
 from hyperleg_design.simulation.drives.actuation import applied
+from hyperleg_design.simulation.drives.limits import Limits
 from hyperleg_design.simulation.drives.machine import Machine
 from hyperleg_design.simulation.drives.two_mass import joined
 

@@ -88,8 +88,8 @@ def drawn(number: int) -> Draw:
     kinds = tuple(map(str, rng.choice(PAIRED, 2, False))) if kind == "pair" else (kind,)
     kinds = () if kind == "nothing" else kinds
     sizes = tuple(
-        float(rng.uniform(*SIZES[one][place]) * _sign(one, rng))
-        for one, place in zip(kinds, places, strict=False)
+        float(rng.uniform(*SIZES[fault][place]) * _sign(fault, rng))
+        for fault, place in zip(kinds, places, strict=False)
     )
     order = [str(name) for name in rng.permutation(sorted(DEVELOPMENT))]
     tested, more = int(rng.integers(1, 3)), int(rng.integers(2, 4))
@@ -107,20 +107,20 @@ def drawn_cases() -> list[Case]:
     """All of them, in the order of their numbers."""
     cases = []
     for number in range(COUNT):
-        one = drawn(number)
+        draw = drawn(number)
         fault = " and ".join(
             f"{kind} {size:.3g} at the {JOINTS[place]}"
-            for kind, place, size in zip(one.kinds, one.places, one.sizes, strict=False)
+            for kind, place, size in zip(draw.kinds, draw.places, draw.sizes, strict=False)
         )
-        listed = not {"drag", "push"} & set(one.kinds)
-        kind = ("nothing", "single", "several")[len(one.kinds)] if listed else "outside"
+        listed = not {"drag", "push"} & set(draw.kinds)
+        kind = ("nothing", "single", "several")[len(draw.kinds)] if listed else "outside"
         cases.append(
             Case(
-                f"drawn-{number:02d}-{'-'.join(one.kinds) or 'nothing'}",
+                f"drawn-{number:02d}-{'-'.join(draw.kinds) or 'nothing'}",
                 "drawn",
                 "development",
-                f"double pendulum A.0, {fault or 'nothing'}, {' and '.join(one.tests)}, "
-                f"{one.channels} channels, {len(one.references)} references",
+                f"double pendulum A.0, {fault or 'nothing'}, {' and '.join(draw.tests)}, "
+                f"{draw.channels} channels, {len(draw.references)} references",
                 kind,
                 partial(material, number=number),
                 needs=FOLDER,
@@ -136,19 +136,19 @@ def material(data: Path, number: int) -> tuple[Material, Truth]:
         data: folder of the real logs.
         number: of the case.
     """
-    one, folder = drawn(number), data / FOLDER
+    draw, folder = drawn(number), data / FOLDER
     model = read_model(folder / MODEL)
-    tests = [read_recording(folder, name) for name in one.tests]
-    references = [read_recording(folder, name) for name in one.references]
+    tests = [read_recording(folder, name) for name in draw.tests]
+    references = [read_recording(folder, name) for name in draw.references]
     faults = []
-    for kind, place, size in zip(one.kinds, one.places, one.sizes, strict=False):
+    for kind, place, size in zip(draw.kinds, draw.places, draw.sizes, strict=False):
         if kind == "load":
-            fault, model, tests, references = _loaded(one, place, size, model, tests, references)
+            fault, model, tests, references = _loaded(draw, place, size, model, tests, references)
         else:
-            fault, change = CHANGES[kind](place, size, one.where)
+            fault, change = CHANGES[kind](place, size, draw.where)
             tests = [change(log) for log in tests]
         faults.append(fault)
-    left_out = CHANNELS[one.channels]
+    left_out = CHANNELS[draw.channels]
     logs, before = (tuple(log.without(*left_out) for log in group) for group in (tests, references))
     return Material(model.mjcf(), logs, before), Truth(tuple(faults), references=bool(references))
 
@@ -157,7 +157,7 @@ Change = Callable[[Recording], Recording]
 
 
 def _loaded(
-    one: Draw,
+    draw: Draw,
     place: int,
     size: float,
     model: DoublePendulum,
@@ -168,13 +168,13 @@ def _loaded(
     are told.
     """
     link = LINKS[place]
-    down = one.where * model.length[place]
-    told = {link: [abs(size), 0.0, 0.0, -down]}
+    down = draw.where * model.length[place]
+    payload = {link: [abs(size), 0.0, 0.0, -down]}
     if size < 0:
-        tests = [log.declared(payload=told) for log in tests]
+        tests = [log.declared(payload=payload) for log in tests]
     else:
         model = _lighter(model, place, size, down)
-        references = [log.declared(payload=told) for log in references]
+        references = [log.declared(payload=payload) for log in references]
     at = (link, JOINTS[place])
     fault = Fault("payload", at, {"mass": size}, (("link_mass", at), ("link_com", at)))
     return fault, model, tests, references

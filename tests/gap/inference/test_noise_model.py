@@ -4,7 +4,7 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.inference.noise_model import SLOWEST_BANDS, expected, felt, of_load
+from hyperleg_design.gap.inference.noise_model import expected, of_load
 from hyperleg_design.gap.inference.rules import NoiseRules
 from hyperleg_design.gap.signals.filtering import filtered_log
 
@@ -122,27 +122,3 @@ def test_noise_of_the_needed_torque_is_told_from_that_of_the_drives(one):
         # interpolation onto even ticks is allowed for
         assert np.all((0.9 * added < told[0][mine]) & (told[0][mine] < 1.7 * added))
         assert np.all(told[1][mine] < 0.1 * added + quiet[mine])
-
-
-def test_what_only_the_accelerations_show_is_felt_by_no_drive(one):
-    """Needed torque with something added that the drives do not have, in fast bands alone."""
-    signals, row = one.signals, 0
-    column = one.rows[row].column
-    rng = np.random.default_rng(2)
-    band, _, _ = one.labels(row)
-    fast = band >= SLOWEST_BANDS
-    assert fast.any()
-
-    def share(drives, added):
-        rigid = signals.rigid + added
-        residual = {"motion": drives - rigid}
-        told = dataclasses.replace(signals, rigid=rigid, residual=residual)
-        return felt(dataclasses.replace(one, signals=told), row)
-
-    noise = np.zeros_like(signals.rigid)
-    noise[:, column] = 3 * np.nanstd(signals.rigid[:, column]) * rng.normal(size=len(noise))
-    assert share(signals.rigid, 0.0) == pytest.approx(1.0)
-    assert share(2 * signals.rigid, 0.0) == pytest.approx(1.0)  # torques of too weak a model
-    drowned = share(signals.rigid, noise)
-    assert drowned[~fast] == pytest.approx(1.0)
-    assert drowned[fast].max() < 0.3

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from hyperleg_design.simulation.alteration import Alteration, Limits, Live
+from hyperleg_design.simulation.alteration import Alteration, Live
 from hyperleg_design.simulation.drives.chain import Chain
+from hyperleg_design.simulation.drives.limits import Limits
 from hyperleg_design.simulation.drives.machine import machine_of
 
 

@@ -18,7 +18,8 @@ from hyperleg_design.gap.effects.series import lagged
 from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.alteration import Limits, Tick
+from hyperleg_design.simulation.alteration import Tick
+from hyperleg_design.simulation.drives.limits import Limits
 
 BANDWIDTH = 10.0
 """Content of the command that tells a motor's bandwidth from delay [Hz]."""

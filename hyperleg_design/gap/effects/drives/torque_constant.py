@@ -23,7 +23,8 @@ from hyperleg_design.gap.effects.placing import (
 )
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.alteration import Limits, Tick
+from hyperleg_design.simulation.alteration import Tick
+from hyperleg_design.simulation.drives.limits import Limits
 
 READING = 1
 """Parameter by which currents are read wrongly."""

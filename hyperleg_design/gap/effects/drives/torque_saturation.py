@@ -23,7 +23,8 @@ from hyperleg_design.gap.effects.placing import (
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.alteration import Limits, Tick
+from hyperleg_design.simulation.alteration import Tick
+from hyperleg_design.simulation.drives.limits import Limits
 
 _QUANTILES = (0.97, 0.9, 0.8, 0.6)
 _NEEDED = 0.95

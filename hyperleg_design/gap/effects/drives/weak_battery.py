@@ -8,7 +8,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from hyperleg_design.simulation.alteration import Alteration, Limits, Live, Tick
+from hyperleg_design.simulation.alteration import Alteration, Live, Tick
+from hyperleg_design.simulation.drives.limits import Limits
 from hyperleg_design.simulation.drives.machine import Machine
 
 SAG = 0.2

@@ -137,8 +137,8 @@ class MomentsEffect(InertialEffect, SpannedEffect):
         """Values that add such a mass and first moment."""
         low, high = self.bounds(location, subject)
         whole = np.asarray(sizes, float) * _scale(subject, location)
-        found = np.clip(self.adding(location, subject, whole[:4]), low, high)
-        return np.asarray(found[self._added(location, subject, found).any(1)])
+        values = np.clip(self.adding(location, subject, whole[:4]), low, high)
+        return np.asarray(values[self._added(location, subject, values).any(1)])
 
     @abstractmethod
     def adding(self, location: str, subject: Subject, moments: np.ndarray) -> np.ndarray:

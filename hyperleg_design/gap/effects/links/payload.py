@@ -141,5 +141,5 @@ class Payload(MomentsEffect):
         """The usual mass where `example` has it, and as much less."""
         low, high = self.bounds(location, signals.subject)
         shown = self.example(location, signals.subject)
-        found = np.clip([shown, shown * np.array([-1.0, 1.0, 1.0, 1.0, 1.0])], low, high)
-        return np.asarray(found[found[:, 0] != 0])
+        values = np.clip([shown, shown * np.array([-1.0, 1.0, 1.0, 1.0, 1.0])], low, high)
+        return np.asarray(values[values[:, 0] != 0])
