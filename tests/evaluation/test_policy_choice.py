@@ -84,8 +84,8 @@ def test_a_tree_of_the_name_of_a_toe_layout_takes_no_hyperlegs_policy(tmp_path):
         ),
         (
             "walk",
-            "toe_passive",
-            "hyperleg train --task walk --design toe_passive --out FOLDER/walk-toe_passive-0",
+            "toe_removed",
+            "hyperleg train --task walk --design toe_removed --out FOLDER/walk-toe_removed-0",
         ),
         (
             "t_test",
