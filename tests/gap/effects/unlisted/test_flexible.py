@@ -64,10 +64,12 @@ def test_traces_are_sums_of_their_shapes_and_nothing_at_the_nulls(pendulum, name
 
 
 @pytest.mark.parametrize("name", FLEXIBLE)
-def test_shapes_cost_no_prior_odds_beside_the_choice_of_the_input(pendulum, name):
+def test_shapes_cost_no_prior_odds_beside_that_of_their_kind_and_the_choice_of_the_input(
+    pendulum, name
+):
     effect, signals = WEIGHED[name], pendulum(Wrong())
     samples = evidence_of([signals], [], InferenceRules()).samples
     row = effect.variants(signals, "swing")[0]
     cause = linearise(samples, effect, "swing", row)
-    assert prior_odds(cause, row) == 0.0
+    assert prior_odds(cause, row) == effect.rare
     assert effect.odds("swing", signals.subject, row) <= -np.log(len(effect.inputs))
