@@ -1,6 +1,4 @@
-"""Alterations and their parts: what does nothing changes nothing, limits are those of the envelope,
-masses are felt.
-"""
+"""Alterations and their parts: what does nothing changes nothing, masses are felt."""
 
 from __future__ import annotations
 
@@ -20,7 +18,6 @@ from hyperleg_design.simulation.alteration import (
     overrides,
     resistance,
 )
-from hyperleg_design.simulation.drives.limits import Limits
 from hyperleg_design.simulation.drives.machine import machine_of
 from hyperleg_design.simulation.drives.told import TOLD
 from hyperleg_design.simulation.drives.two_mass import Belt
@@ -30,7 +27,6 @@ from hyperleg_design.simulation.model import simulation_model
 from hyperleg_design.simulation.settings import Physics
 from hyperleg_design.simulation.stepping.snapshot import put_snapshot, take_snapshot
 from hyperleg_design.simulation.tasks import load_task
-from hyperleg_design.sizing.envelope import clip_torque, motor_envelope
 
 
 class _Through(Live):
@@ -256,31 +252,6 @@ def test_an_altered_environment_put_back_goes_on_bit_for_bit(design, alteration)
 def environment_step(environment, action):
     environment.reset()
     return environment.step(action).observations["policy"]
-
-
-def test_limits_clip_as_the_envelope_does(design):
-    envelope = motor_envelope(design)
-    rng = np.random.default_rng(0)
-    motors = len(envelope.peak_torque)
-    torque, speed = (
-        rng.uniform(-3, 3, (400, motors)) * envelope.peak_torque,
-        rng.uniform(-2, 2, (400, motors)) * envelope.no_load_speed,
-    )
-    limits = Limits(envelope.no_load_speed, envelope.stall_torque, envelope.peak_torque)
-    np.testing.assert_allclose(
-        limits.clip(torque, speed), clip_torque(envelope, torque, speed), rtol=1e-12
-    )
-
-
-def test_limits_that_nobody_knows_do_not_limit():
-    free = np.full(2, np.inf)
-    torque = np.array([[1e6, -1e6]])
-    np.testing.assert_array_equal(
-        Limits(free, free, free).clip(torque, np.array([[5.0, -3.0]])), torque
-    )
-    np.testing.assert_array_equal(
-        Limits(free, free, np.array([3.0, 4.0])).clip(torque, np.zeros((1, 2))), [[3.0, -4.0]]
-    )
 
 
 def test_constants_change_for_all_or_one_by_one(design):

@@ -20,7 +20,7 @@ from hyperleg_design.gap.inference import noise_model, nuisance, nuisance_traces
 from hyperleg_design.gap.inference.channels.channel import Channel
 from hyperleg_design.gap.inference.channels.discrepancy import MOTORS, load, shapes
 from hyperleg_design.gap.inference.endogenous import Factor
-from hyperleg_design.gap.inference.felt import SLOWEST_BANDS, felt_share
+from hyperleg_design.gap.inference.felt import SLOWEST_BANDS
 from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import Samples, gather
@@ -114,8 +114,6 @@ class _Set:
     samples: Samples
     floors: list[list[np.ndarray]]
     """Expected noise of each log and row."""
-    felt: list[list[np.ndarray]]
-    """Share of the torque that motion needs which drives show, of each log and row."""
     errors: np.ndarray
     """Columns of the nuisance parameters, steady ones first `(p, S)`."""
     steady: int
@@ -211,7 +209,6 @@ def _joined(sets: Sequence[_Set], rules: InferenceRules) -> Samples:
     return gather(
         [filtered for one in sets for filtered in one.filtered_logs],
         [floors for one in sets for floors in one.floors],
-        [felt for one in sets for felt in one.felt],
         sessions,
         rules.noise.information,
     )
@@ -225,18 +222,17 @@ def _set(
 ) -> _Set:
     filtered_logs = [filtering.filtered_log(one, resting.sticking(one)) for one in signals]
     floors = [noise_model.expected(one, rules.noise) for one in filtered_logs]
-    felt = [[felt_share(log, row) for row in range(len(log.rows))] for log in filtered_logs]
     names = [one.log.metadata.session or f"\0{i}" for i, one in enumerate(signals)]
     order = list(dict.fromkeys(names))
     sessions = [order.index(name) for name in names]
-    samples = gather(filtered_logs, floors, felt, sessions, rules.noise.information)
+    samples = gather(filtered_logs, floors, sessions, rules.noise.information)
     columns = np.zeros((len(errors), len(samples.value)))
     for filtered, places in zip(filtered_logs, samples.where, strict=True):
         for row, found in nuisance_traces.columns(filtered, errors).items():
             columns[:, places[row]] = found
     columns[[one.inertial for one in errors]] *= samples.felt
     steady = sum(one.inertial for one in errors)
-    return _Set(filtered_logs, samples, floors, felt, columns, steady, tested)
+    return _Set(filtered_logs, samples, floors, columns, steady, tested)
 
 
 def _channel(

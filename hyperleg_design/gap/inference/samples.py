@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hyperleg_design.gap.inference.felt import felt_share
 from hyperleg_design.gap.signals.filtering import FilteredLog, Row, traced
 from hyperleg_design.gap.signals.signals import Signals
 
@@ -100,7 +101,6 @@ class Samples:
 def gather(
     filtered_logs: Sequence[FilteredLog],
     floors: Sequence[Sequence[np.ndarray]],
-    felt: Sequence[Sequence[np.ndarray]],
     sessions: Sequence[int],
     information: float,
 ) -> Samples:
@@ -109,7 +109,6 @@ def gather(
     Args:
         filtered_logs: one a log.
         floors: of each log, of each of its rows `(samples,)`.
-        felt: share of the torque that motion needs which drives show, likewise.
         sessions: number of the session of each log, from 0.
         information: share of what would be independent numbers in white noise that counts as such.
     """
@@ -138,7 +137,7 @@ def gather(
             values = filtered_log.sample(place, residual[None])[0]
             block = blocks + (time / BLOCK).astype(int)
             labels = np.full(len(band), overall), group, part, block
-            numbers = floors[number][place], share * information, felt[number][place]
+            numbers = floors[number][place], share * information, felt_share(filtered_log, place)
             columns = values, *numbers, *labels
             for column, own in zip(table, columns, strict=True):
                 column.append(own)

@@ -91,7 +91,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         nulls = np.where(shape, values, nulls)
         low, high = np.where(shape, nulls, low), np.where(shape, nulls, high)
         settings, divide = nulls + np.diag(np.where(shape, 0.0, usual)), np.ones(k)
-        found = samples.columns(lambda s: effect.trace(s, location, settings), k, effect.inertial)
+        found = _columns(samples, effect, location, settings)
         if found is None:
             return None
         columns, constant = found, np.zeros(found.shape[1])
@@ -104,9 +104,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         divide = (tried - values) / usual
         some = np.flatnonzero(divide)
         settings = np.concatenate([(values + np.diag(tried - values))[some], values[None]])
-        found = samples.columns(
-            lambda s: effect.trace(s, location, settings), len(settings), effect.inertial
-        )
+        found = _columns(samples, effect, location, settings)
         if found is None:
             return None
         columns = np.zeros((k, found.shape[1]))
@@ -122,6 +120,15 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     numbers = values, nulls, usual, low, high, shape, columns, constant
     facts = effect.linear, declared, scaled, unseen, subject.tree.beyond(location)
     return Cause(effect.identifier, location, *numbers, *facts)
+
+
+def _columns(
+    samples: Samples, effect: Effect, location: str, values: np.ndarray
+) -> np.ndarray | None:
+    """Samples of an effect's traces at some values `(k, parameters)`, as of `Samples.columns`."""
+    return samples.columns(
+        lambda s: effect.trace(s, location, values), len(values), effect.inertial
+    )
 
 
 def _same_place(subject: Subject, one: str, other: str) -> bool:
@@ -172,9 +179,7 @@ def trace(samples: Samples, effect: Effect, location: str) -> Traces:
         count, span = weights.shape[1], effect.span
         columns = samples.columns(lambda s: span(s, location), count, effect.inertial)
     else:
-        columns = samples.columns(
-            lambda s: effect.trace(s, location, starts), len(starts), effect.inertial
-        )
+        columns = _columns(samples, effect, location, starts)
     if columns is None:
         return unexcited
     begun = Starts(starts, columns, weights)

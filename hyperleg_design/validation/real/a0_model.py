@@ -48,14 +48,29 @@ class DoublePendulum:
 
     def without_tip(self) -> DoublePendulum:
         """The model with the weight at the tip left out of link 2."""
-        mass = self.mass[1] - TIP_MASS
-        moment = self.mass[1] * self.com[1] - TIP_MASS * self.length[1]
-        inertia = self.inertia[1] - TIP_MASS * self.length[1] ** 2
+        return self.without_load(1, TIP_MASS, self.length[1])
+
+    def without_load(self, link: int, load: float, down: float) -> DoublePendulum:
+        """The model with a point mass left out of a link.
+
+        Args:
+            link: 0 or 1.
+            load: the mass [kg].
+            down: its distance from the link's joint [m].
+
+        Returns:
+            The model.
+        """
+        mass, com, inertia = list(self.mass), list(self.com), list(self.inertia)
+        moment = mass[link] * com[link] - load * down
+        mass[link] -= load
+        com[link] = moment / mass[link]
+        inertia[link] -= load * down**2
         return replace(
             self,
-            mass=(self.mass[0], mass),
-            com=(self.com[0], moment / mass),
-            inertia=(self.inertia[0], inertia),
+            mass=(mass[0], mass[1]),
+            com=(com[0], com[1]),
+            inertia=(inertia[0], inertia[1]),
         )
 
     def without_friction(self, *joints: str) -> DoublePendulum:

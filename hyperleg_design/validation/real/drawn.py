@@ -173,26 +173,11 @@ def _loaded(
     if size < 0:
         tests = [log.declared(payload=payload) for log in tests]
     else:
-        model = _lighter(model, place, size, down)
+        model = model.without_load(place, size, down)
         references = [log.declared(payload=payload) for log in references]
     at = (link, JOINTS[place])
     fault = Fault("payload", at, {"mass": size}, (("link_mass", at), ("link_com", at)))
     return fault, model, tests, references
-
-
-def _lighter(model: DoublePendulum, place: int, mass: float, down: float) -> DoublePendulum:
-    """The model without a point mass of its link, a distance down from the joint."""
-    masses, coms, inertias = (list(x) for x in (model.mass, model.com, model.inertia))
-    moment = masses[place] * coms[place] - mass * down
-    masses[place] -= mass
-    coms[place] = moment / masses[place]
-    inertias[place] -= mass * down**2
-    return replace(
-        model,
-        mass=(masses[0], masses[1]),
-        com=(coms[0], coms[1]),
-        inertia=(inertias[0], inertias[1]),
-    )
 
 
 def _torque(place: int, size: float, where: float) -> tuple[Fault, Change]:

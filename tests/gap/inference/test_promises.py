@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from causes import unbounded
 
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.inference.assembly import evidence_of
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
 from hyperleg_design.gap.inference.promises import LARGEST, Promises
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.screen import NotJudged, Starts
 from hyperleg_design.gap.inference.search import traces_of
+from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 from tests.gap.inference.channels.test_channel import made
 
 RULES = InferenceRules()
@@ -86,3 +91,48 @@ def test_a_start_that_scales_no_torque_is_charged_nothing(search):
         search.evidence, search.rules, {name: Starts(np.ones((3, 1)), np.ones((3, 4)))}
     )
     assert promises.scaling(name) == [None, None, None]
+
+
+def promised(signals, name, link, values, beside=0.0):
+    """Promises of an effect at a link whose trace at some values is the residual, or is added to
+    what there is, of a model that is hardly wrong otherwise.
+    """
+    trace = EFFECTS[name].trace(signals, link, np.array([values]))
+    residual = {
+        kind: beside * rows + trace[kind][0] if kind in trace else rows
+        for kind, rows in signals.residual.items()
+    }
+    evidence = evidence_of([replace(signals, residual=residual)], [], RULES)
+    promises = Promises(evidence, RULES, traces_of(evidence, [(name, link)], 1))
+    scales = (replace(one.start(RULES), standing=np.log(0.1)) for one in evidence.channels)
+    return promises.beside((), tuple(scales))
+
+
+@pytest.mark.parametrize("name", ["payload", "link_com"])
+@pytest.mark.parametrize("values", [[1.2, 0.08, -0.06, 0.1, 0.0], [1.2, -0.05, 0.07, 0.02, 0.0]])
+def test_the_best_start_is_near_what_is_there_wherever_it_lies(name, values, robot_files, runs):
+    log, link = runs["arm"], "forearm"
+    arm = condition(log, load_subject(robot_files["arm"], [log]))
+    truth = values if name == "payload" else values[1:4]
+    best = promised(arm, name, link, truth)[0].values
+    there, found = EFFECTS[name].trace(arm, link, np.array([truth, best]))["motion"]
+    assert np.square(there - found).mean() < 0.05 * np.square(there).mean()
+
+
+def test_a_payload_that_hangs_there_is_found(robot_files, runs):
+    log = runs["arm"]
+    arm = condition(log, load_subject(robot_files["arm"], [log]))
+    values = [2.0, 0.05, -0.02, 0.15, 0.0]
+    best = promised(arm, "payload", "wrist_1_link", values, beside=1.0)[0].values
+    assert best[0] == pytest.approx(2.0, rel=0.15)
+    np.testing.assert_allclose(best[1:], values[1:], atol=0.05)
+
+
+def test_a_payload_on_a_floating_base_is_found(biped_runs):
+    """No joint feels it directly; the ground must give more."""
+    log = biped_runs["standing"]
+    standing = condition(log, load_subject(None, [log]))
+    base = EFFECTS["payload"].locations(standing.subject)[0]
+    best = promised(standing, "payload", base, [3.0, 0.06, -0.04, 0.1, 0.0])[0].values
+    assert best[0] == pytest.approx(3.0, rel=0.05)
+    np.testing.assert_allclose(best[1:3], [0.06, -0.04], atol=0.02)

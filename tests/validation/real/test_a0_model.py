@@ -85,3 +85,14 @@ def test_a_damaged_model_file_is_refused(tmp_path):
         read_model(path)
     with pytest.raises(InputError):
         read_model(tmp_path / "none.yml")
+
+
+def test_a_load_that_is_taken_off_is_a_point_mass():
+    model = DoublePendulum(
+        (1.0, 0.8), (0.2, 0.15), (0.06, 0.04), (0.3, 0.3), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)
+    )
+    less = model.without_load(1, 0.3, 0.2)
+    assert less.mass[1] + 0.3 == pytest.approx(0.8)
+    assert less.mass[1] * less.com[1] + 0.3 * 0.2 == pytest.approx(0.8 * 0.15)
+    assert less.inertia[1] + 0.3 * 0.2**2 == pytest.approx(0.04)
+    assert (less.mass[0], less.com[0], less.inertia[0]) == (1.0, 0.2, 0.06)

@@ -12,7 +12,6 @@ from hyperleg_design.validation.real.drawn import (
     CHANGES,
     COUNT,
     SIZES,
-    _lighter,
     drawn,
     drawn_cases,
     material,
@@ -38,19 +37,6 @@ def test_names_are_unique_and_all_kinds_are_there():
     assert len({case.name for case in cases}) == COUNT
     assert {case.kind for case in cases} == {"nothing", "single", "several", "outside"}
     assert {case.split for case in cases} == {"development"}
-
-
-def test_a_load_that_is_taken_off_is_a_point_mass():
-    from hyperleg_design.validation.real.a0_model import DoublePendulum
-
-    model = DoublePendulum(
-        (1.0, 0.8), (0.2, 0.15), (0.06, 0.04), (0.3, 0.3), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)
-    )
-    less = _lighter(model, 1, 0.3, 0.2)
-    assert less.mass[1] + 0.3 == pytest.approx(0.8)
-    assert less.mass[1] * less.com[1] + 0.3 * 0.2 == pytest.approx(0.8 * 0.15)
-    assert less.inertia[1] + 0.3 * 0.2**2 == pytest.approx(0.04)
-    assert (less.mass[0], less.com[0], less.inertia[0]) == (1.0, 0.2, 0.06)
 
 
 @logged
