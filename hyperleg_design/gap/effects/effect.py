@@ -23,7 +23,6 @@ KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 """Where an effect can sit."""
 RESIDUALS = ("motion", "drive", "control", "base", "ground")
 """Rows that a trace can fill; `gap/signals/signals.py` says what each compares."""
-
 LOGGED, NEEDED, STEERED = NUISANCE_TORQUES = ("logged", "needed", "steered")
 """Torques that a trace of a nuisance parameter rests on: those of the log; those that the motion
 needs; the log's with targets by which controllers ask for what the motion needs, where nobody
@@ -77,8 +76,9 @@ class Effect(ABC):
     stretched: ClassVar[bool] = False
     """Whether a load, with all of its noise, shapes the trace; the first parameter sizes it."""
     scales: ClassVar[str] = ""
-    """`motor` or `joint` where it scales the torque that the residual of motion trusts, of the
-    motor or joint at which it sits; empty where it scales none."""
+    """`motor` or `joint` where it scales a torque that the residual of motion trusts."""
+    holds_back: ClassVar[bool] = False
+    """Whether a part of what controllers ask for does not arrive, such as beyond a limit."""
     scales_measured: ClassVar[bool] = True
     """Whether it scales torque that is measured, too, not only what a controller asks for."""
     told_apart: ClassVar[Mapping[str, Set[str]]] = {}
@@ -385,7 +385,7 @@ class Effect(ABC):
             joint: index of the joint that it moves most.
 
         Returns:
-            The slope, `(t,)`, or `(1,)` where it is the same at all ticks.
+            The slope, `(t,)`, or `(1,)` of all ticks.
         """
         return np.ones(1)
 

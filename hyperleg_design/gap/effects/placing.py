@@ -267,15 +267,16 @@ def joint_strength(subject: Subject) -> np.ndarray:
     Returns:
         The torques `(n,)` [Nm].
     """
-    share, known = np.abs(subject.joint_from_motor), np.isfinite(subject.torque_limit)
-    given = share @ np.where(known, subject.torque_limit, 0.0)
+    most = np.minimum(subject.torque_limit, subject.stall_torque)
+    share, known = np.abs(subject.joint_from_motor), np.isfinite(most)
+    given = share @ np.where(known, most, 0.0)
     unknown = (share @ (~known).astype(float) > 0) | (given <= 0)
     return np.where(unknown, _needed(subject), given) if unknown.any() else given
 
 
 def motor_strength(subject: Subject, motor: int) -> float:
-    """Torque for which a motor is made [Nm]: its limit, else its share of what its joints are made
-    for.
+    """Torque for which a motor is made [Nm]: its limit or what it gives at stall, else its share of
+    what its joints are made for.
 
     Args:
         subject: the robot.
@@ -284,8 +285,9 @@ def motor_strength(subject: Subject, motor: int) -> float:
     Returns:
         The torque [Nm].
     """
-    if 0 < subject.torque_limit[motor] < np.inf:
-        return float(subject.torque_limit[motor])
+    most = float(min(subject.torque_limit[motor], subject.stall_torque[motor]))
+    if 0 < most < np.inf:
+        return most
     column = np.abs(subject.joint_from_motor[:, motor])
     used = column > 0
     return float(np.max(joint_strength(subject)[used] / column[used], initial=1e-3))

@@ -65,17 +65,23 @@ class Evidence:
         for channel, share in zip(self.channels, self.moved, strict=True):
             row = rows.index((channel.residual, channel.column))
             place = channel.samples if standing else channel.under_test
-            if row == factor.row or (channel.residual in MOTORS and np.any(trace[place] != 0)):
+            others = not factor.alone and channel.residual in MOTORS
+            if row == factor.row or (others and np.any(trace[place] != 0)):
                 numbers = share * float(self.samples.share[place].sum())
                 number, at = max((number, at), (numbers, row), key=lambda one: one[0])
         return replace(factor, number=number, row=at)
 
     def scaled(self, cause: Cause) -> Cause:
         """A cause that pays for scaling torques."""
-        if not isinstance(cause.factor, Factor):
-            return cause
-        trace = cause.columns[cause.factor.parameter]
-        return replace(cause, factor=self.paying(cause.factor, trace, cause.standing))
+        return replace(
+            cause,
+            factors=tuple(
+                self.paying(term, cause.columns[term.parameter], cause.standing)
+                if isinstance(term, Factor)
+                else term
+                for term in cause.factors
+            ),
+        )
 
     def acting(self, cause: Cause, standing: bool) -> Cause:
         """A cause whose columns are those of its own logs, with columns of all samples.

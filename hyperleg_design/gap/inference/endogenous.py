@@ -13,13 +13,13 @@ than the floor gains nothing so: that would only tell that the floor is high.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.placing import is_measured
+from hyperleg_design.gap.effects.placing import is_measured, motor_strength
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.inference.shrinking import Shrinking, shrinking
 from hyperleg_design.gap.signals.signals import Signals
@@ -29,13 +29,15 @@ FAINT = 0.5
 the floor on all of it."""
 LEAST = 0.05
 """Factor below which the logarithm is cut."""
+SMALL = 1e-3
+"""Change of a command over the torque that its motor is made for."""
 TICKS = 200
 """Ticks of a log that stand for all."""
 
 
 @dataclass(frozen=True, eq=False)
 class Factor:
-    """How causes scale believed torques: 1 + slope phi, phi being one parameter of each."""
+    """How causes scale believed torques: 1 + level + slope phi, phi being one parameter of each."""
 
     parameter: int
     slope: np.ndarray
@@ -46,6 +48,10 @@ class Factor:
     """Share of a gain that counts."""
     row: int = 0
     """Row of the joint that it scales most."""
+    level: np.ndarray = field(default_factory=lambda: np.zeros(1))
+    """At these ticks `(t,)` or `(1,)`."""
+    alone: bool = False
+    """Whether it is one of several of a cause, so that each counts in its own row alone."""
 
     def log(self, phi: np.ndarray) -> float:
         """N mean log of the factor, of parameters `(causes,)`."""
@@ -58,7 +64,7 @@ class Factor:
         return self.number * ratio.mean(1), self.number * (ratio @ ratio.T) / ratio.shape[1]
 
     def _left(self, phi: np.ndarray) -> np.ndarray:
-        return np.asarray(np.maximum(1 + phi @ self.slope, LEAST))
+        return np.asarray(np.maximum(1 + self.level + phi @ self.slope, LEAST))
 
 
 def joined(
@@ -83,28 +89,32 @@ def joined(
         terms = [term for _, term in own]
         longest = max(terms, key=lambda term: (term.slope.shape[1], term.number))
         ticks = longest.slope.shape[1]  # logs under test come first in all of them
+        level = np.zeros(ticks)
+        for term in terms:
+            level[: term.slope.shape[1]] += term.level
         slope = [np.pad(term.slope, ((0, 0), (0, ticks - term.slope.shape[1]))) for term in terms]
-        whole = replace(
-            longest, slope=np.concatenate(slope), shows=min(term.shows for term in terms)
-        )
+        shows = min(term.shows for term in terms)
+        whole = replace(longest, slope=np.concatenate(slope), level=level, shows=shows)
         found.append(([place for place, _ in own], whole))
     return found
 
 
-def factor(
+def factors_of(
     samples: Samples,
     effect: str,
     location: str,
     usual: np.ndarray,
     values: np.ndarray | None = None,
-) -> Factor | Shrinking | None:
-    """Of an effect at a place, at its values where they matter; None where it scales no torque that
+) -> tuple[Factor | Shrinking, ...]:
+    """Of an effect at a place, at its values where they matter; none where it scales no torque that
     the residual trusts.
     """
     subject = samples.filtered_logs[0].signals.subject
     scaling = WEIGHED[effect]
     if values is not None and (noise := shrinking(samples, scaling, location, usual, values)):
-        return noise
+        return (noise,)
+    if values is not None and scaling.holds_back:
+        return held_back(samples, scaling, location, values)
     if scaling.scales == "motor":
         motor = subject.motors.index(location)
         joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
@@ -112,20 +122,137 @@ def factor(
         joint = subject.joints.index(location)
         motor = int(np.argmax(np.abs(subject.joint_from_motor[joint])))
     else:
-        return None
-    rows = [
-        i for i, r in enumerate(samples.rows) if r.residual_name == "motion" and r.column == joint
-    ]
-    if not rows:
-        return None
-    if not scaling.scales_measured and any(
-        is_measured(s.signals, motor) for s in samples.filtered_logs
-    ):
-        return None
-    number = float(samples.share[samples.row == rows[0]].sum())
+        return ()
+    row = _row(samples, joint)
+    if row is None or (not scaling.scales_measured and _measured(samples, motor)):
+        return ()
+    number = float(samples.share[samples.row == row].sum())
     slopes = [_slope(s.signals, scaling, motor, joint) for s in samples.filtered_logs]
     slope = usual[0] * np.concatenate(slopes)[None]
-    return Factor(0, slope, number, _shows(samples, rows[0], motor, joint), rows[0])
+    return (Factor(0, slope, number, _shows(samples, row, motor, joint), row),)
+
+
+def held_back_whole(
+    samples: Samples, effect: Effect, location: str, values: np.ndarray
+) -> list[Factor]:
+    """As `held_back`, of the size of the whole trace at some values.
+
+    Args:
+        samples: of the logs.
+        effect: of the catalogue.
+        location: its place.
+        values: of its parameters `(k,)`.
+
+    Returns:
+        One a joint.
+    """
+    return [
+        Factor(0, -lost[:1], number, 1.0, row, alone=True)
+        for row, number, lost in _lost(samples, effect, location, values[None])
+    ]
+
+
+def held_back(
+    samples: Samples, effect: Effect, location: str, values: np.ndarray
+) -> tuple[Factor, ...]:
+    """Of an effect that holds torques back, linearised at some values: how much of a small change
+    of what controllers ask for arrives at each joint whose torque nobody measures.
+
+    Args:
+        samples: of the logs.
+        effect: of the catalogue.
+        location: its place.
+        values: of its parameters `(k,)`.
+
+    Returns:
+        One a joint and parameter, the first of each joint with the level.
+    """
+    subject = samples.filtered_logs[0].signals.subject
+    usual, nulls = effect.usual(location, subject), effect.nulls
+    low, high = effect.bounds(location, subject)
+    step = effect.steps(location, subject)
+    step = np.where(values + step <= high, step, -step)
+    free = [i for i, p in enumerate(effect.parameters) if not p.shape and low[i] < high[i]]
+    settings = np.stack([values, *(values + step[i] * np.eye(len(values))[i] for i in free)])
+    factors = []
+    for row, number, lost in _lost(samples, effect, location, settings):
+        slopes = [(lost[0] - lost[1 + k]) * usual[i] / step[i] for k, i in enumerate(free)]
+        phi = (values - nulls) / usual
+        level = -lost[0] - sum(phi[i] * slope for i, slope in zip(free, slopes, strict=True))
+        for i, slope in zip(free, slopes, strict=True):
+            own = level if i == free[0] else 0 * level
+            factors.append(Factor(i, slope[None], number, 1.0, row, own, alone=True))
+    return tuple(factors)
+
+
+def _lost(
+    samples: Samples, effect: Effect, location: str, settings: np.ndarray
+) -> list[tuple[int, float, np.ndarray]]:
+    """Rows of joints that an effect holds torque back from, their independent numbers, and the
+    share of a small change of commands that does not arrive, at some ticks `(settings, t)`.
+    """
+    subject = samples.filtered_logs[0].signals.subject
+    moved = np.argmax(np.abs(subject.joint_from_motor), 0)
+    rows = []
+    for joint in np.unique(moved).tolist():
+        motors = [m for m in np.flatnonzero(moved == joint).tolist() if not _measured(samples, m)]
+        row = _row(samples, joint)
+        if row is None or not motors:
+            continue
+        lost = np.mean(
+            [
+                np.concatenate(
+                    [
+                        _missing(log.signals, effect, location, settings, motor, joint)
+                        for log in samples.filtered_logs
+                    ],
+                    -1,
+                )
+                for motor in motors
+            ],
+            0,
+        )
+        if lost.any():
+            rows.append((row, float(samples.share[samples.row == row].sum()), lost))
+    return rows
+
+
+def _missing(
+    signals: Signals,
+    effect: Effect,
+    location: str,
+    settings: np.ndarray,
+    motor: int,
+    joint: int,
+) -> np.ndarray:
+    """Share of a small change of a motor's command that does not arrive, at some ticks
+    `(settings, t)`.
+    """
+    ticks = slice(None, None, max(len(signals.time) // TICKS, 1))
+    nothing = np.zeros((len(settings), len(signals.time[ticks])))
+    if signals.command is None:
+        return nothing
+    small = SMALL * motor_strength(signals.subject, motor)
+    more = signals.command.copy()
+    more[:, motor] += small
+    rows = effect.trace(signals, location, settings).get("motion")
+    if rows is None:
+        return nothing
+    moved = effect.trace(replace(signals, command=more), location, settings)["motion"]
+    over = small * signals.subject.joint_from_motor[joint, motor]
+    share = (moved - rows)[:, ticks, joint] / over
+    return np.clip(np.nan_to_num(share), 0.0, 1.0)
+
+
+def _row(samples: Samples, joint: int) -> int | None:
+    """Row of a joint's motion, if it has one."""
+    keys = [(row.residual_name, row.column) for row in samples.rows]
+    return keys.index(("motion", joint)) if ("motion", joint) in keys else None
+
+
+def _measured(samples: Samples, motor: int) -> bool:
+    """Whether a log measures the torque of a motor."""
+    return any(is_measured(log.signals, motor) for log in samples.filtered_logs)
 
 
 def _shows(samples: Samples, row: int, motor: int, joint: int) -> float:

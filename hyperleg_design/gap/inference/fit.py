@@ -40,8 +40,8 @@ class Cause:
     linear: bool
     declared: float = 0.0
     """Payload that the logs declare at its place [kg]."""
-    factor: Factor | Shrinking | None = None
-    """How it scales the torque that the residual trusts, or noise."""
+    factors: tuple[Factor | Shrinking, ...] = ()
+    """How it scales the torques that the residual trusts, or noise."""
     unseen: bool = False
     """Whether no log has the signal that drives it, a voltage or a temperature, so that it is
     modelled."""

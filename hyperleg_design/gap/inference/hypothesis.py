@@ -138,9 +138,9 @@ class Stack:
                 constant = constant + one.constant
         ends = np.cumsum([0, *(len(one.nulls) for one in causes)]).tolist()
         factors = tuple(
-            (start + one.factor.parameter, one.factor)
+            (start + term.parameter, term)
             for start, one in zip(ends, causes, strict=False)
-            if one.factor is not None
+            for term in one.factors
         )
         return cls(
             np.concatenate([one.columns for one in causes]) * weight,
@@ -185,6 +185,7 @@ def solve(
     shape: np.ndarray,
     rules: InferenceRules,
     factors: Sequence[tuple[int, Factor | Shrinking]] = (),
+    near: np.ndarray | None = None,
 ) -> Solution:
     """Posterior of causes by Laplace's method, exact where all are linear and within bounds.
 
@@ -195,13 +196,21 @@ def solve(
         shape: parameters that only shape a trace; their prior deviation is 1 `(k,)`.
         rules: of the inference.
         factors: as of `Stack`.
+        near: theta of a solution of about the same problem, of the first parameters `(j,)`; without
+            it, small and large sizes are both looked for.
     """
     # columns that are alike to rounding must not make the normal equations singular
     normal = products[1:, 1:] * (1 + ALIKE * np.eye(len(low)))
     groups = joined(factors)
+    begin, wide = np.zeros(len(low)), np.full(len(low), FREE)
+    firsts = [np.full(len(low), rules.cause.width), wide]
+    if near is not None:
+        begin[: len(near)] = near
+        wide[: len(near)] = np.maximum(rules.cause.width, np.abs(near))
+        firsts = [wide]
     found = [
-        _solve(normal, products[1:, 0], low, high, shape, rules, groups, first)
-        for first in (rules.cause.width, FREE)
+        _solve(normal, products[1:, 0], low, high, shape, rules, groups, begin, first)
+        for first in firsts
     ]
     theta, precision, gain, occam = max(found, key=lambda one: one[2])
     covariance = np.linalg.inv(precision) if len(theta) else np.zeros((0, 0))
@@ -216,12 +225,12 @@ def _solve(
     shape: np.ndarray,
     rules: InferenceRules,
     groups: Sequence[tuple[list[int], Factor | Shrinking]],
-    first: float,
+    theta: np.ndarray,
+    first: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """As `solve`, from a first prior deviation of the sizes: theta, its precision, gain and
-    occam.
+    """As `solve`, from some theta and a first prior deviation of the sizes: theta, its precision,
+    gain and occam.
     """
-    theta = np.zeros(len(low))
     deviation = np.where(shape, 1.0, first)
     for turn in range(ROUNDS):
         if turn:

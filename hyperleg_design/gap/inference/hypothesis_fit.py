@@ -178,21 +178,33 @@ class HypothesisFit:
         this.
         """
         again = self.evidence.acting(again, cause.standing)
-        if isinstance(again.factor, Factor) and isinstance(cause.factor, Factor):
-            again = replace(again, factor=replace(again.factor, shows=cause.factor.shows))
-        return replace(again, before=before)
+        shows = {term.row: term.shows for term in cause.factors if isinstance(term, Factor)}
+        factors = tuple(
+            replace(term, shows=shows.get(term.row, term.shows))
+            if isinstance(term, Factor)
+            else term
+            for term in again.factors
+        )
+        return replace(again, factors=factors, before=before)
 
-    def at_scales(self, stack: Stack, crossing: Crossing, scales: Sequence[Scales]) -> Solution:
+    def at_scales(
+        self,
+        stack: Stack,
+        crossing: Crossing,
+        scales: Sequence[Scales],
+        near: np.ndarray | None = None,
+    ) -> Solution:
         """Causes at fixed scales; the gain is over no cause at these.
 
         Args:
             stack: columns of the causes.
             crossing: of its rows with the channels.
             scales: by channel.
+            near: theta at scales nearby.
         """
         products = crossing.reduced(self.evidence.channels, scales)
         own = shifted(products, stack.constant_last)
-        solution = solve(own, stack.low, stack.high, stack.shape, self.rules, stack.factors)
+        solution = solve(own, stack.low, stack.high, stack.shape, self.rules, stack.factors, near)
         change = -0.5 * float(own[0, 0] - products[0, 0])
         return replace(solution, gain=solution.gain + change)
 
@@ -226,17 +238,21 @@ class HypothesisFit:
         channels, rules = self.evidence.channels, self.rules.search
         found = list(scales)
         solution = self.at_scales(stack, crossing, found)
+        moved = np.ones(crossing.count, bool)
         for turn in range(rules.rounds):
             left = crossing.left(channels, _sizes(stack, solution))
             sweeps, steps = (2, STEPS) if turn == 0 else (1, STEPS[-1:])
             each = zip(channels, found, left, crossing.shown, strict=True)
             found = [
-                fitted(channel, own, self.rules, rest, sweeps, steps) if len(seen) else own
+                fitted(channel, own, self.rules, rest, sweeps, steps) if moved[seen].any() else own
                 for channel, own, rest, seen in each
             ]
-            before, solution = solution.theta, self.at_scales(stack, crossing, found)
+            before = solution.theta
+            solution = self.at_scales(stack, crossing, found, before)
             deviation = np.sqrt(np.maximum(np.diag(solution.covariance), 1e-300))
-            if np.all(np.abs(solution.theta - before) < rules.settled * deviation):
+            moved[: len(before)] = np.abs(solution.theta - before) >= rules.settled * deviation
+            moved[len(before) :] = False
+            if not moved.any():
                 break
         left = crossing.left(channels, _sizes(stack, solution))
         likelihood = solution.occam + sum(

@@ -14,7 +14,7 @@ from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.endogenous import Factor, factor
+from hyperleg_design.gap.inference.endogenous import Factor, factors_of, held_back_whole
 from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import Name, Solution, Stack, solve
 from hyperleg_design.gap.inference.rules import InferenceRules
@@ -56,8 +56,13 @@ class _Beside:
     """Columns and constant trace, weighted twice as the residual `(k, S)`."""
     taken: tuple[np.ndarray, ...]
     """Of residual, columns and constant trace by channel, see `Channel.taken`."""
-    gain: float
-    """Of the hypothesis alone [nat]."""
+    solution: Solution | None
+    """Of the hypothesis alone."""
+
+    @property
+    def gain(self) -> float:
+        """Of the hypothesis alone [nat]."""
+        return 0.0 if self.solution is None else self.solution.gain
 
 
 class Promises:
@@ -80,7 +85,7 @@ class Promises:
         self.evidence, self.rules, self.threads = evidence, rules, threads
         self.traces = traces
         self._crossings: dict[Name, Crossing] = {}
-        self._scaling: dict[Name, Sequence[Factor | Shrinking | None]] = {}
+        self._scaling: dict[Name, Sequence[Sequence[Factor | Shrinking]]] = {}
 
     def options(self, name: Name) -> tuple[list[Cause | None], list[np.ndarray]]:
         """Variants of an effect at a place, or columns of its starts; none where the logs do not
@@ -97,32 +102,39 @@ class Promises:
             return list(traced), [one.columns for one in traced]
         return [None] * len(traced.columns), list(traced.columns[:, None])
 
-    def scaling(self, name: Name) -> Sequence[Factor | Shrinking | None]:
+    def scaling(self, name: Name) -> Sequence[Sequence[Factor | Shrinking]]:
         """How each option of an effect at a place scales the torques that residuals are made of."""
         if name not in self._scaling:
             traced = self.traces[name]
             assert not isinstance(traced, screen.NotJudged)
             self._scaling[name] = (
-                [one.factor for one in traced]
+                [one.factors for one in traced]
                 if isinstance(traced, list)
                 else self._of_starts(name, traced)
             )
         return self._scaling[name]
 
-    def _of_starts(self, name: Name, starts: screen.Starts) -> Sequence[Factor | None]:
+    def _of_starts(self, name: Name, starts: screen.Starts) -> Sequence[Sequence[Factor]]:
         """As `scaling`, of the sizes of starts."""
         effect, location, standing = WEIGHED[name[0]], name[1], name[2]
-        whole = None
+        if not (effect.scales or effect.holds_back):
+            return [()] * len(starts.values)
+        samples = self.evidence.samples if standing else self.evidence.tests
+        scaled: list[list[Factor]] = [[] for _ in starts.values]
         if effect.scales:
             usual = effect.usual(location, self.evidence.signals[0].subject)
-            samples = self.evidence.samples if standing else self.evidence.tests
-            whole = factor(samples, effect.identifier, location, usual)
-        if not isinstance(whole, Factor):
-            return [None] * len(starts.values)
-        sizes = (starts.values[:, 0] - effect.nulls[0]) / usual[0]
+            sizes = (starts.values[:, 0] - effect.nulls[0]) / usual[0]
+            for whole in factors_of(samples, effect.identifier, location, usual):
+                if isinstance(whole, Factor):
+                    for own, size in zip(scaled, sizes, strict=True):
+                        own.append(replace(whole, slope=size * whole.slope))
+        else:
+            scaled = [
+                held_back_whole(samples, effect, location, values) for values in starts.values
+            ]
         return [
-            self.evidence.paying(replace(whole, slope=size * whole.slope), trace, standing)
-            for size, trace in zip(sizes, starts.traces, strict=True)
+            [self.evidence.paying(factor, trace, standing) for factor in own]
+            for own, trace in zip(scaled, starts.traces, strict=True)
         ]
 
     def crossing(self, name: Name) -> Crossing:
@@ -185,9 +197,10 @@ class Promises:
                 whole[:, :, 1 + some] = cross[:, :-1]
             taken.append(channel.taken(own, whole))
         products = crossing.reduced(channels, scales)
-        base = _Beside(stack, crossing, scales, products, rows * weight, tuple(taken), 0.0)
-        gain = self._solved(base, products, np.zeros(0, int)).gain if causes else 0.0
-        return _Beside(stack, crossing, scales, products, rows * weight, tuple(taken), gain)
+        base = _Beside(stack, crossing, scales, products, rows * weight, tuple(taken), None)
+        if causes:
+            base = replace(base, solution=self._solved(base, products, np.zeros(0, int)))
+        return base
 
     def _of(self, name: Name, base: _Beside) -> list[Promise]:
         """All options of an effect at a place."""
@@ -251,7 +264,7 @@ class Promises:
             values = np.concatenate([nearest, values])
             weights = np.concatenate([effect.in_span(name[1], subject, nearest), starts.weights])
             turn = block_diag(np.eye(rows), weights)
-            products, scaling = turn @ products @ turn.T, [None] * len(values)
+            products, scaling = turn @ products @ turn.T, [()] * len(values)
         promises = []
         for number, (start, scaled) in enumerate(zip(values, scaling, strict=True)):
             solution = self._solved(base, products, np.array([rows + number]), None, scaled)
@@ -265,7 +278,7 @@ class Promises:
         products: np.ndarray,
         place: np.ndarray,
         cause: Cause | None = None,
-        scaled: Factor | Shrinking | None = None,
+        scaled: Sequence[Factor | Shrinking] = (),
         free: bool = False,
     ) -> Solution:
         """One option's columns beside those of the hypothesis.
@@ -275,7 +288,7 @@ class Promises:
             products: of the residual, its rows, and the option's columns.
             place: of these columns.
             cause: of the option; None for a start.
-            scaled: how its first parameter, or the size of the start, scales torques.
+            scaled: how its parameters, or the size of the start, scale torques.
             free: whether sizes of starts may be anything.
         """
         stack, known = base.stack, 0 if base.stack is None else len(base.stack.columns)
@@ -295,7 +308,7 @@ class Promises:
             low, high = (-np.inf, np.inf) if free else (0.0, LARGEST)
             count = len(place)
             stacks.append((np.full(count, low), np.full(count, high), np.zeros(count, bool)))
-        if scaled is not None:
-            factors.append((known + scaled.parameter, scaled))
+        factors += [(known + term.parameter, term) for term in scaled]
         low, high, shape = (np.concatenate([s[i] for s in stacks]) for i in range(3))
-        return solve(own, low, high, shape.astype(bool), self.rules, factors)
+        near = None if base.solution is None else base.solution.theta
+        return solve(own, low, high, shape.astype(bool), self.rules, factors, near)

@@ -13,7 +13,7 @@ import numpy as np
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.spanned import SpannedEffect
-from hyperleg_design.gap.inference.endogenous import factor
+from hyperleg_design.gap.inference.endogenous import factors_of
 from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.model.subject import Subject
@@ -113,7 +113,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     payload = subject.declared.payload
     masses = (float(payload[at][0]) for at in payload if _same_place(subject, at, location))
     declared = max(masses, default=0.0)
-    scaled = factor(samples, effect.identifier, location, usual, values)
+    scaled = factors_of(samples, effect.identifier, location, usual, values)
     unseen = bool(effect.driver) and all(
         getattr(s.signals, effect.driver) is None for s in samples.filtered_logs
     )
@@ -152,9 +152,9 @@ def under_test(cause: Cause, tests: Samples) -> Cause | None:
     columns = cause.columns[:, : len(tests.value)]
     if reach(tests, columns) < SHOWN:
         return None
-    scaled = factor(tests, cause.effect, cause.location, cause.usual, cause.values)
+    scaled = factors_of(tests, cause.effect, cause.location, cause.usual, cause.values)
     constant = cause.constant[: len(tests.value)]
-    return replace(cause, columns=columns, constant=constant, factor=scaled)
+    return replace(cause, columns=columns, constant=constant, factors=scaled)
 
 
 def trace(samples: Samples, effect: Effect, location: str) -> Traces:

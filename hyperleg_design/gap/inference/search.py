@@ -271,6 +271,9 @@ def ungaining(cause: Cause) -> Cause:
     """A cause that gains nothing by scaling torques up: where all torques are scaled, masses and
     friction may be, too, and all that is left to gain is noise nearer to the expected one.
     """
-    if isinstance(cause.factor, Factor):
-        return replace(cause, factor=replace(cause.factor, shows=0.0))
-    return cause
+    if not cause.factors:
+        return cause
+    factors = (
+        replace(term, shows=0.0) if isinstance(term, Factor) else term for term in cause.factors
+    )
+    return replace(cause, factors=tuple(factors))

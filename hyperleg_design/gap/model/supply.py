@@ -38,6 +38,18 @@ def over_nominal(subject: Subject, voltage: np.ndarray | None) -> np.ndarray:
     return np.where(driven & np.isfinite(ratio), ratio, 1.0)
 
 
+def driven_by_duty(subject: Subject) -> np.ndarray:
+    """Find the joints that a motor without current control moves.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        `(n,)`.
+    """
+    return np.asarray(((subject.joint_from_motor != 0) & np.isfinite(subject.supply)).any(1))
+
+
 def followed(subject: Subject) -> tuple[Alteration, ...]:
     """Make a simulation of a robot follow its battery's measured voltage.
 

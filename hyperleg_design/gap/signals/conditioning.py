@@ -16,7 +16,7 @@ from hyperleg_design.gap.logs.frozen import frozen
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model import friction, pads, rigid
 from hyperleg_design.gap.model.subject import Subject
-from hyperleg_design.gap.model.supply import over_nominal
+from hyperleg_design.gap.model.supply import driven_by_duty, over_nominal
 from hyperleg_design.gap.signals import contact, transmission
 from hyperleg_design.gap.signals.base_motion import base_motion
 from hyperleg_design.gap.signals.channels import (
@@ -94,7 +94,9 @@ def condition(log: Log, subject: Subject) -> Signals:
         base, derived = base_motion(log, subject, ticks)
         notes += derived
     voltage = _voltage(log, ticks)
-    command, target, control, others = _command(log, subject, ticks, motion)
+    # the damping of a motor without current control is its own, by the speed that it really has
+    seen = np.where(driven_by_duty(subject), np.nan, velocity)
+    command, target, control, others = _command(log, subject, ticks, motion, seen)
     measured = _measured(log, subject, ticks)
     residual: dict[str, np.ndarray] = {}
     speed = motion.first @ subject.joint_from_motor
@@ -165,7 +167,7 @@ def condition(log: Log, subject: Subject) -> Signals:
         velocity=motion.first,
         acceleration=motion.second,
         base=base,
-        sensed=sensed_velocity(resampled(log.time, velocity, ticks), motion, step),
+        sensed=sensed_velocity(resampled(log.time, seen, ticks), motion, step),
         motor_speed=speed,
         target=target,
         command=command,
@@ -239,7 +241,7 @@ def limited_torque(
 
 
 def _command(
-    log: Log, subject: Subject, ticks: np.ndarray, motion: Smooth
+    log: Log, subject: Subject, ticks: np.ndarray, motion: Smooth, speed: np.ndarray
 ) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray | None, tuple[str, ...]]:
     """Motor torque that the controller asks for, position targets, the residual of the control, and
     motors that it cannot speak of.
@@ -251,7 +253,6 @@ def _command(
     control: np.ndarray | None = None
     others: tuple[str, ...] = ()
     if target is not None:
-        speed = log.stack("velocity", subject.joints)
         derived = np.stack([np.interp(log.time, ticks, v) for v in motion.first.T], -1)
         speed = np.where(np.isfinite(speed), speed, derived)
         stiffness, damping = subject.gains.T

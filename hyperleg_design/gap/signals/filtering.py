@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hyperleg_design.gap.signals.resting import moving
+from hyperleg_design.gap.signals.resting import moving, rubbing
 from hyperleg_design.gap.signals.signals import Signals, row_names
 
 EDGES = (0.5, 1.5, 4.0, 10.0)
@@ -165,8 +165,8 @@ def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> Filtere
         for column in range(residual.shape[1]):
             mask = signals.valid & np.isfinite(residual[:, column])
             if residual_name == "motion" and resting is not None:
-                rubs = bool(signals.subject.coulomb[column] > 0)
-                mask = moving(mask, resting[:, column], signals.step, rubs=rubs)
+                rubs = rubbing(signals)[column]
+                mask = moving(mask, resting[:, column], signals.step, rubs=bool(rubs))
             if mask.sum() < FEWEST:
                 continue
             name = row_names(signals.subject, residual_name)[column]

@@ -26,15 +26,15 @@ over (assumed)."""
 def moving(known: np.ndarray, resting: np.ndarray, step: float, *, rubs: bool) -> np.ndarray:
     """Choose the known ticks of a joint without its rest.
 
-    The rest of a joint that hardly moves counts, too, unless its model has dry friction (`rubs`).
-    Then only long stretches of its motion count, because what smoothing leaves of jerks is no noise
-    any more where the moments between them are cut out.
+    The rest of a joint that hardly moves counts, too, unless it has dry friction (`rubs`). Then
+    only long stretches of its motion count, because what smoothing leaves of jerks is no noise any
+    more where the moments between them are cut out.
 
     Args:
         known: ticks at which the residual is known, `(t,)`.
         resting: ticks at which the joint rests, `(t,)`.
         step: between ticks [s].
-        rubs: whether the model of the joint has dry friction.
+        rubs: whether the joint has dry friction.
 
     Returns:
         The ticks that count, `(t,)`.
@@ -64,6 +64,21 @@ def stretches(mask: np.ndarray, shortest: float) -> list[slice]:
     return [slice(a, b) for a, b in ends.reshape(-1, 2).tolist() if b - a >= shortest]
 
 
+def rubbing(signals: Signals) -> np.ndarray:
+    """Find the joints with dry friction: of the model, and any whose torque is told by targets or
+    commands alone, which at rest are whatever its friction lets stand. Few files tell the friction
+    of a servo.
+
+    Args:
+        signals: conditioned log.
+
+    Returns:
+        `(n,)`.
+    """
+    subject = signals.subject
+    return np.asarray((subject.coulomb > 0) | ((signals.measured is None) & ~subject.passive))
+
+
 def moving_ticks(signals: Signals, known: np.ndarray, resting: np.ndarray) -> np.ndarray:
     """Choose the ticks that count for all joints, as `moving` does for one.
 
@@ -75,8 +90,7 @@ def moving_ticks(signals: Signals, known: np.ndarray, resting: np.ndarray) -> np
     Returns:
         `(t, n)`.
     """
-    rubs = (signals.subject.coulomb > 0).tolist()
-    joints = zip(known.T, resting.T, rubs, strict=True)
+    joints = zip(known.T, resting.T, rubbing(signals).tolist(), strict=True)
     return np.stack([moving(k, r, signals.step, rubs=dry) for k, r, dry in joints], -1)
 
 

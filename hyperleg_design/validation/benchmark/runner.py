@@ -26,6 +26,7 @@ from hyperleg_design.validation.benchmark.scoring import VERSION, score
 from hyperleg_design.validation.newcomers.cases import newcomer_cases
 from hyperleg_design.validation.newcomers.crane_cases import crane_cases
 from hyperleg_design.validation.newcomers.quadruped_cases import quadruped_cases
+from hyperleg_design.validation.newcomers.servo_cases import servo_cases
 from hyperleg_design.validation.real.cases import real_cases
 from hyperleg_design.validation.real.drawn import drawn_cases
 from hyperleg_design.validation.spread import spread
@@ -55,7 +56,8 @@ class Outcome:
 
 def all_cases() -> list[Case]:
     """Every case of this version."""
-    made = real_cases, drawn_cases, newcomer_cases, crane_cases, quadruped_cases, blind_cases
+    newcomers = newcomer_cases, crane_cases, servo_cases, quadruped_cases
+    made = real_cases, drawn_cases, *newcomers, blind_cases
     cases = [case for some in made for case in some()]
     names = [case.name for case in cases]
     assert len(set(names)) == len(names), "names of cases are unique"

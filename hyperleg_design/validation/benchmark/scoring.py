@@ -34,7 +34,7 @@ from typing import Any
 from hyperleg_design.validation.benchmark.adapter import FAILED
 from hyperleg_design.validation.benchmark.case import Fault, Truth
 
-VERSION = 4
+VERSION = 5
 """Of the cases and of these rules together; 2 and 3 add cases and change none."""
 NAMING = ("explained", "ambiguous")
 """Verdicts by which causes are named."""

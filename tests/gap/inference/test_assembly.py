@@ -60,8 +60,8 @@ def test_a_cause_may_scale_torques_of_a_row_that_references_alone_have(robot_fil
     lacking = replace(evidence, tests=replace(evidence.tests, rows=rows[:-1]))
     factor = Factor(0, np.ones((1, 1)), 1.0, row=len(rows) - 1)
     columns = np.ones((1, len(evidence.samples.value)))
-    cause = replace(unbounded("torque_constant", "m_front", columns), factor=factor)
-    assert lacking.scaled(cause).factor.number == evidence.scaled(cause).factor.number > 0
+    cause = replace(unbounded("torque_constant", "m_front", columns), factors=(factor,))
+    assert lacking.scaled(cause).factors[0].number == evidence.scaled(cause).factors[0].number > 0
 
 
 def test_a_reading_that_is_off_pays_in_the_residual_of_its_drive_whatever_else_scales_the_torque(
@@ -73,7 +73,7 @@ def test_a_reading_that_is_off_pays_in_the_residual_of_its_drive_whatever_else_s
     for effect, values in (("torque_constant", [1.0, 1.0]), ("transmission_ratio", [1.02, 0.0])):
         found = screen.linearise(samples, WEIGHED[effect], "m_front", np.array(values))
         causes[effect] = evidence.acting(found, False)
-    rows = [samples.rows[cause.factor.row] for cause in causes.values()]
+    rows = [samples.rows[cause.factors[0].row] for cause in causes.values()]
     assert [row.residual_name for row in rows] == ["drive", "motion"]
     assert subject.motors[rows[0].column] == "m_front"
-    assert len(joined([(i, one.factor) for i, one in enumerate(causes.values())])) == 2
+    assert len(joined([(i, one.factors[0]) for i, one in enumerate(causes.values())])) == 2

@@ -79,7 +79,7 @@ def test_a_start_that_scales_torques_is_charged_for_it_as_a_cause_is(search):
     promises = Promises(evidence, search.rules, traces_of(evidence, places, 1))
     name = (effect, motor, False)
     starts = promises.traces[name]
-    for start, scaled in zip(starts.values, promises.scaling(name), strict=True):
+    for start, (scaled,) in zip(starts.values, promises.scaling(name), strict=True):
         for size in (0.5, 1.0, 3.0):
             scale = 1 + size * (start[0] - 1)
             assert scaled.log(np.array([size])) == pytest.approx(scaled.number * np.log(scale))
@@ -90,7 +90,7 @@ def test_a_start_that_scales_no_torque_is_charged_nothing(search):
     promises = Promises(
         search.evidence, search.rules, {name: Starts(np.ones((3, 1)), np.ones((3, 4)))}
     )
-    assert promises.scaling(name) == [None, None, None]
+    assert promises.scaling(name) == [(), (), ()]
 
 
 def promised(signals, name, link, values, beside=0.0):

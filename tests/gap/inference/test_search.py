@@ -100,10 +100,10 @@ def test_without_references_nothing_acts_in_them(search):
 def test_a_cause_that_does_not_gain_by_scaling_torques_is_otherwise_the_same(search):
     (cause,) = search.traces[VISCOUS]
     assert ungaining(cause) is cause
-    scaling = replace(cause, factor=Factor(0, np.ones((1, 3)), 50.0))
+    scaling = replace(cause, factors=(Factor(0, np.ones((1, 3)), 50.0),))
     found = ungaining(scaling)
     assert found.columns is cause.columns
     sizes = np.linspace(-0.3, 0.3, 7)[:, None]
-    gains = np.array([[one.factor.log(size) for size in sizes] for one in (scaling, found)])
+    gains = np.array([[one.factors[0].log(size) for size in sizes] for one in (scaling, found)])
     assert np.abs(gains[0]).max() > 0.1
     assert (gains[1] <= 1e-12).all()

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.endogenous import factor
+from hyperleg_design.gap.inference.endogenous import factors_of
 from hyperleg_design.gap.inference.shrinking import LOAD, TORQUE, Shrinking, taken
 from hyperleg_design.gap.model.machine import rotor
 from hyperleg_design.gap.pipeline.diagnose import diagnose
@@ -44,7 +44,7 @@ def test_noise_that_a_trace_adds_gains_nothing_either(phi):
 
 def test_belts_pay_where_encoders_at_the_joints_bring_noise_into_their_load(robot_files):
     samples = diagnosed.evidence(robot_files["servos"], diagnosed.stamped_badly(0)).samples
-    one = factor(samples, BELT, "knee", USUAL, np.array([0.004, 0.05, 0.0, 0.0, 0.0]))
+    (one,) = factors_of(samples, BELT, "knee", USUAL, np.array([0.004, 0.05, 0.0, 0.0, 0.0]))
     assert isinstance(one, Shrinking)
     assert one.log(0.5) < 0
 
@@ -80,7 +80,7 @@ def test_a_clock_that_jitters_is_no_belt(robot_files):
 def test_belts_pay_for_the_noise_of_torques_that_stretches_them(robot_files, behind, stiffening):
     samples = diagnosed.evidence(robot_files["servos"], diagnosed.stamped_badly(0)).samples
     values = np.array([0.01, 0.05, 1.0, behind, stiffening])
-    one = factor(samples, BELT, "knee", USUAL, values)
+    (one,) = factors_of(samples, BELT, "knee", USUAL, values)
     assert isinstance(one, Shrinking)
     assert one.log(values[0] / USUAL[0]) < 0
     # the same from other noise, and from what is left of it

@@ -6,7 +6,7 @@ from diagnosed import conditioned
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.gap.model.supply import over_nominal
+from hyperleg_design.gap.model.supply import driven_by_duty, over_nominal
 from hyperleg_design.gap.pipeline.diagnose import diagnose_signals
 from hyperleg_design.gap.playback.replay import replay
 from hyperleg_design.gap.playback.windows import short_windows
@@ -102,6 +102,23 @@ def test_ratio_is_one_where_nothing_is_known(servo):
     assert over_nominal(subject, None).tolist() == [[1.0]]
     assert over_nominal(subject, np.array([3.7, np.nan]))[:, 0].tolist() == [0.5, 1.0]
     assert over_nominal(load_subject(servo), np.array([3.7])).tolist() == [[1.0]]
+
+
+def test_a_motor_is_damped_by_the_speed_that_it_has_not_by_that_which_it_tells(servo):
+    """A servo tells filtered speeds late; its damping is that of its windings."""
+    right = run()
+    late = np.interp(right.time - 0.03, right.time, right.signals["velocity/swing"])
+    telling = right.changed(signals=right.signals | {"velocity/swing": late})
+    (one,), (other,) = conditioned(servo, right), conditioned(servo, telling)
+    assert driven_by_duty(one.subject).tolist() == [True]
+    np.testing.assert_allclose(other.command, one.command, atol=0.02 * np.abs(one.command).max())
+    assert np.std(other.residual["drive"][other.valid]) < 0.02 * np.std(one.measured[one.valid])
+    asked = [
+        conditioned(servo, log.changed(metadata=log.metadata.changed(supply={})))[0].command
+        for log in (right, telling)
+    ]
+    more = -DAMPING * (late - right.signals["velocity/swing"])[:, None]  # as a controller reads it
+    np.testing.assert_allclose(asked[1] - asked[0], more, atol=1e-9)
 
 
 def test_replays_follow_the_battery(servo):

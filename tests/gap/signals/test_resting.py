@@ -7,6 +7,7 @@ from hyperleg_design.gap.signals.resting import (
     UNDERWAY,
     moving,
     moving_ticks,
+    rubbing,
     sticking,
     travelled,
 )
@@ -77,3 +78,7 @@ def test_the_rest_of_a_joint_that_hardly_moves_counts_only_without_dry_friction(
     every = moving_ticks(dry, np.ones_like(still), still)
     assert every[:, 0].all()
     np.testing.assert_array_equal(every[:, 1], ~still[:, 1])
+    # where nobody measures the torque, a servo's position error at rest is what friction holds
+    told = dataclasses.replace(dry, measured=None)
+    assert rubbing(told).all()
+    np.testing.assert_array_equal(moving_ticks(told, np.ones_like(still), still), ~still)

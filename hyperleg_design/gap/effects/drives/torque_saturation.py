@@ -65,6 +65,7 @@ class TorqueSaturation(MotorEffect):
         Parameter("inverse_limit", "1/Nm", 0.0, 0.0, 1e3, 0.1, SOURCE),
     )
     hooks: ClassVar[type[MotorHooks]] = _Lower
+    holds_back: ClassVar[bool] = True
     needs: ClassVar[Need] = Need(
         lambda motion: motion.swinging,
         "commands of different size",

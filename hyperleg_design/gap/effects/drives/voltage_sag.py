@@ -65,6 +65,7 @@ class VoltageSag(Effect):
     rare: ClassVar[float] = -1.0
     """Assumed."""
     driver: ClassVar[str] = "voltage"
+    holds_back: ClassVar[bool] = True
     unseen: ClassVar[float] = -6.0
     """Assumed."""
     summary: ClassVar[str] = "the battery's voltage drops, and with it torque limits or torques"
