@@ -19,6 +19,10 @@ $(VENV)/.learning: $(VENV)/.ready  # torch and what goes with it, for training; 
 study: $(VENV)/.ready  ## Analyse the paper's biped and its ablations, sweep, and write results/study/index.html
 	$(BIN)/hyperleg study --out results/study
 
+# two processes of tests are enough for two cores: linear algebra with threads of its own gets in their way
+test test-all: export OMP_NUM_THREADS = 1
+test test-all: export OPENBLAS_NUM_THREADS = 1
+
 test: $(VENV)/.learning  ## All tests but the slow ones, style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
