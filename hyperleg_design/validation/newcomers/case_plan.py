@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
 from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Truth
 from hyperleg_design.validation.newcomers.plant import Wrong, everywhere
@@ -78,6 +79,46 @@ class CasePlan(ABC):
             identified=self.identified,
             everywhere=everywhere(self.wrongs),
         )
+
+
+P = TypeVar("P", bound=CasePlan)
+
+
+def single(plan: type[P], label: str, what: str, place: int, size: float, **more: object) -> P:
+    """Plan a case with one thing wrong.
+
+    Args:
+        plan: class of the robot's plans.
+        label: of the case.
+        what: is wrong.
+        place: number of the joint.
+        size: of what is wrong.
+        more: fields of the plan.
+
+    Returns:
+        The plan.
+    """
+    return plan(label, (Wrong(what, place, size),), **more)  # type: ignore[arg-type]
+
+
+def at_all_joints(
+    plan: type[P], joints: int, label: str, what: str, size: float, **more: object
+) -> P:
+    """Plan a case with the same thing wrong at every joint.
+
+    Args:
+        plan: class of the robot's plans.
+        joints: how many the robot has.
+        label: of the case.
+        what: is wrong.
+        size: of what is wrong at each.
+        more: fields of the plan.
+
+    Returns:
+        The plan.
+    """
+    wrongs = tuple(Wrong(what, joint, size) for joint in range(joints))
+    return plan(label, wrongs, **more)  # type: ignore[arg-type]
 
 
 def development_cases(plans: Sequence[CasePlan], duration: float) -> list[Case]:

@@ -18,6 +18,7 @@ import numpy as np
 
 from hyperleg_design.validation.benchmark.case import Recording
 from hyperleg_design.validation.newcomers.plant import Wrong
+from hyperleg_design.validation.newcomers.point_mass import add_point_mass
 from hyperleg_design.validation.newcomers.recorded import recorded
 
 XML = """<mujoco model="crane"><compiler angle="degree" autolimits="true"/>
@@ -205,7 +206,7 @@ def simulate(wrongs: Sequence[Wrong], run: Run) -> Recording:
             case "thick":
                 model.dof_damping[j] *= x
             case "load":
-                _load(model, j, x)
+                add_point_mass(model, BODIES[j], x, LOAD_AT[j])
             case "weak":
                 weak[j] = x
             case "late":
@@ -274,16 +275,6 @@ def simulate(wrongs: Sequence[Wrong], run: Run) -> Recording:
         data.ctrl[:] = np.clip(torque, -limit, limit)
         mujoco.mj_step(model, data)
     return _logged(np.array(rows), limit, noise, run.name)
-
-
-def _load(model: mujoco.MjModel, joint: int, mass: float) -> None:
-    """Put a point mass on the body of a joint."""
-    body, at = model.body(BODIES[joint]).id, np.array(LOAD_AT[joint])
-    old, centre = model.body_mass[body], model.body_ipos[body].copy()
-    away = at - centre
-    model.body_inertia[body] += mass * old / (mass + old) * (away @ away - away**2)
-    model.body_ipos[body] = (old * centre + mass * at) / (old + mass)
-    model.body_mass[body] += mass
 
 
 def _logged(

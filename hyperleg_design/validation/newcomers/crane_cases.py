@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import mujoco
@@ -10,7 +11,12 @@ from typing_extensions import override
 
 from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
 from hyperleg_design.validation.newcomers import crane
-from hyperleg_design.validation.newcomers.case_plan import CasePlan, development_cases
+from hyperleg_design.validation.newcomers.case_plan import (
+    CasePlan,
+    at_all_joints,
+    development_cases,
+    single,
+)
 from hyperleg_design.validation.newcomers.crane import BODIES, JOINTS, MOTORS, Run
 from hyperleg_design.validation.newcomers.names import fault_of
 from hyperleg_design.validation.newcomers.plant import Wrong
@@ -82,14 +88,7 @@ class CranePlan(CasePlan):
         )
 
 
-def _one(label: str, what: str, place: int, size: float, **more: object) -> CranePlan:
-    return CranePlan(label, (Wrong(what, place, size),), **more)  # type: ignore[arg-type]
-
-
-def _each(label: str, what: str, size: float, **more: object) -> CranePlan:
-    wrongs = tuple(Wrong(what, joint, size) for joint in range(len(JOINTS)))
-    return CranePlan(label, wrongs, **more)  # type: ignore[arg-type]
-
+_one, _each = partial(single, CranePlan), partial(at_all_joints, CranePlan, len(JOINTS))
 
 PLANS: tuple[CranePlan, ...] = (
     CranePlan("nothing-same"),

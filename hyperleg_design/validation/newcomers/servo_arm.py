@@ -20,6 +20,7 @@ import numpy as np
 
 from hyperleg_design.validation.benchmark.case import Recording
 from hyperleg_design.validation.newcomers.plant import Wrong
+from hyperleg_design.validation.newcomers.point_mass import add_point_mass
 from hyperleg_design.validation.newcomers.recorded import recorded
 
 XML = """<mujoco model="servo_arm"><compiler angle="degree" autolimits="true"/>
@@ -216,7 +217,7 @@ def simulate(wrongs: Sequence[Wrong], run: Run) -> Recording:
             case "thick":
                 servos.viscous[j] += x
             case "load":
-                _load(model, j, x)
+                add_point_mass(model, BODIES[j], x, LOAD_AT[j])
             case "weak":
                 servos.constant[j] *= x
             case "gain":
@@ -280,13 +281,3 @@ def simulate(wrongs: Sequence[Wrong], run: Run) -> Recording:
         torque_constant=dict.fromkeys(JOINTS, CONSTANT),
         supply={joint: [VOLTAGE, stall, free] for joint in JOINTS},
     )  # fmt: skip
-
-
-def _load(model: mujoco.MjModel, joint: int, mass: float) -> None:
-    """Put a point mass on the body of a joint."""
-    body, at = model.body(BODIES[joint]).id, np.array(LOAD_AT[joint])
-    old, centre = model.body_mass[body], model.body_ipos[body].copy()
-    away = at - centre
-    model.body_inertia[body] += mass * old / (mass + old) * (away @ away - away**2)
-    model.body_ipos[body] = (old * centre + mass * at) / (old + mass)
-    model.body_mass[body] += mass

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from typing_extensions import override
 
 from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
 from hyperleg_design.validation.newcomers import servo_arm
-from hyperleg_design.validation.newcomers.case_plan import CasePlan, development_cases
+from hyperleg_design.validation.newcomers.case_plan import (
+    CasePlan,
+    at_all_joints,
+    development_cases,
+    single,
+)
 from hyperleg_design.validation.newcomers.names import fault_of
 from hyperleg_design.validation.newcomers.plant import Wrong
 from hyperleg_design.validation.newcomers.servo_arm import BODIES, JOINTS, Run
@@ -71,14 +77,7 @@ class ServoPlan(CasePlan):
         return tuple(servo_arm.simulate(wrongs, run).declared(session=label) for run in runs)
 
 
-def _one(label: str, what: str, place: int, size: float, **more: object) -> ServoPlan:
-    return ServoPlan(label, (Wrong(what, place, size),), **more)  # type: ignore[arg-type]
-
-
-def _each(label: str, what: str, size: float, **more: object) -> ServoPlan:
-    wrongs = tuple(Wrong(what, joint, size) for joint in range(len(JOINTS)))
-    return ServoPlan(label, wrongs, **more)  # type: ignore[arg-type]
-
+_one, _each = partial(single, ServoPlan), partial(at_all_joints, ServoPlan, len(JOINTS))
 
 PLANS: tuple[ServoPlan, ...] = (
     ServoPlan("nothing-same"),

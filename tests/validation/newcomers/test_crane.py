@@ -105,17 +105,6 @@ def test_what_the_catalogue_lacks_moves_its_joint(what, place, size):
     assert change[place] > 0.02
 
 
-def test_a_load_adds_its_mass_and_its_moment():
-    model, _ = built(11)
-    body = model.body("tool").id
-    mass, moment = model.body_mass[body], model.body_mass[body] * model.body_ipos[body]
-    crane._load(model, 3, 0.5)
-    assert model.body_mass[body] == pytest.approx(mass + 0.5)
-    np.testing.assert_allclose(
-        model.body_mass[body] * model.body_ipos[body], moment + 0.5 * np.array(crane.LOAD_AT[3])
-    )
-
-
 def test_what_no_crane_knows_is_refused():
     with pytest.raises(ValueError, match="haunted"):
         run(Wrong("haunted"))

@@ -85,17 +85,6 @@ def test_half_the_gain_sags_twice_as_far():
     assert sag[1] / sag[0] == pytest.approx(2.0, rel=0.15)
 
 
-def test_a_load_adds_its_mass_and_its_moment():
-    model, _ = built(11)
-    body = model.body("hand").id
-    mass, moment = model.body_mass[body], model.body_mass[body] * model.body_ipos[body]
-    servo_arm._load(model, 4, 0.2)
-    assert model.body_mass[body] == pytest.approx(mass + 0.2)
-    np.testing.assert_allclose(
-        model.body_mass[body] * model.body_ipos[body], moment + 0.2 * np.array(servo_arm.LOAD_AT[4])
-    )
-
-
 def test_what_no_such_arm_knows_is_refused():
     with pytest.raises(ValueError, match="haunted"):
         run(Wrong("haunted"))
