@@ -385,7 +385,7 @@ class Effect(ABC):
             joint: index of the joint that it moves most.
 
         Returns:
-            The slope, `(t,)`, or `(1,)` of all ticks.
+            The slope, `(t,)`, or `(1,)` where it is the same at all ticks.
         """
         return np.ones(1)
 

@@ -192,27 +192,18 @@ def _lost(
     share of a small change of commands that does not arrive, at some ticks `(settings, t)`.
     """
     subject = samples.filtered_logs[0].signals.subject
-    moved = np.argmax(np.abs(subject.joint_from_motor), 0)
+    joints = np.argmax(np.abs(subject.joint_from_motor), 0)  # that each motor moves most
+    unmeasured = [motor for motor in range(len(joints)) if not _measured(samples, motor)]
+    each = [
+        _missing(log.signals, effect, location, settings, unmeasured, joints)
+        for log in samples.filtered_logs
+    ]
+    missing = np.concatenate(each, -1)
     rows = []
-    for joint in np.unique(moved).tolist():
-        motors = [m for m in np.flatnonzero(moved == joint).tolist() if not _measured(samples, m)]
+    for joint in np.unique(joints[unmeasured]).tolist():
         row = _row(samples, joint)
-        if row is None or not motors:
-            continue
-        lost = np.mean(
-            [
-                np.concatenate(
-                    [
-                        _missing(log.signals, effect, location, settings, motor, joint)
-                        for log in samples.filtered_logs
-                    ],
-                    -1,
-                )
-                for motor in motors
-            ],
-            0,
-        )
-        if lost.any():
+        lost = missing[joints[unmeasured] == joint].mean(0)
+        if row is not None and lost.any():
             rows.append((row, float(samples.share[samples.row == row].sum()), lost))
     return rows
 
@@ -222,25 +213,25 @@ def _missing(
     effect: Effect,
     location: str,
     settings: np.ndarray,
-    motor: int,
-    joint: int,
+    motors: Sequence[int],
+    joints: np.ndarray,
 ) -> np.ndarray:
-    """Share of a small change of a motor's command that does not arrive, at some ticks
-    `(settings, t)`.
+    """Share of a small change of each motor's command that does not arrive at its joint, at some
+    ticks `(motors, settings, t)`.
     """
     ticks = slice(None, None, max(len(signals.time) // TICKS, 1))
-    nothing = np.zeros((len(settings), len(signals.time[ticks])))
-    if signals.command is None:
-        return nothing
-    small = SMALL * motor_strength(signals.subject, motor)
-    more = signals.command.copy()
-    more[:, motor] += small
+    share = np.zeros((len(motors), len(settings), len(signals.time[ticks])))
     rows = effect.trace(signals, location, settings).get("motion")
-    if rows is None:
-        return nothing
-    moved = effect.trace(replace(signals, command=more), location, settings)["motion"]
-    over = small * signals.subject.joint_from_motor[joint, motor]
-    share = (moved - rows)[:, ticks, joint] / over
+    if signals.command is None or rows is None:
+        return share
+    for place, motor in enumerate(motors):
+        small = SMALL * motor_strength(signals.subject, motor)
+        more = signals.command.copy()
+        more[:, motor] += small
+        moved = effect.trace(replace(signals, command=more), location, settings)["motion"]
+        joint = joints[motor]
+        over = small * signals.subject.joint_from_motor[joint, motor]
+        share[place] = (moved - rows)[:, ticks, joint] / over
     return np.clip(np.nan_to_num(share), 0.0, 1.0)
 
 

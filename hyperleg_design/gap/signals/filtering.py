@@ -160,13 +160,12 @@ def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> Filtere
     """
     from scipy.fft import next_fast_len
 
-    rows, masks = [], []
+    rows, masks, rubs = [], [], rubbing(signals).tolist()
     for residual_name, residual in sorted(signals.residual.items()):
         for column in range(residual.shape[1]):
             mask = signals.valid & np.isfinite(residual[:, column])
             if residual_name == "motion" and resting is not None:
-                rubs = rubbing(signals)[column]
-                mask = moving(mask, resting[:, column], signals.step, rubs=bool(rubs))
+                mask = moving(mask, resting[:, column], signals.step, rubs=rubs[column])
             if mask.sum() < FEWEST:
                 continue
             name = row_names(signals.subject, residual_name)[column]

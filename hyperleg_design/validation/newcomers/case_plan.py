@@ -10,7 +10,9 @@ from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
-from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Truth
+from typing_extensions import override
+
+from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
 from hyperleg_design.validation.newcomers.plant import Wrong, everywhere
 
 
@@ -79,6 +81,50 @@ class CasePlan(ABC):
             identified=self.identified,
             everywhere=everywhere(self.wrongs),
         )
+
+
+class MotionPlan(CasePlan):
+    """One case of a robot whose tests and references are logs of one build of it, each of a motion
+    of its own.
+    """
+
+    @property
+    @abstractmethod
+    def file(self) -> str:
+        """The robot's file."""
+
+    @abstractmethod
+    def log(
+        self, wrongs: Sequence[Wrong], motion: str, seed: int, label: str, duration: float
+    ) -> Recording:
+        """Record one log.
+
+        Args:
+            wrongs: what is wrong in it.
+            motion: of the robot.
+            seed: of the motion and the noise.
+            label: name of the log.
+            duration: of it [s].
+
+        Returns:
+            The log.
+        """
+
+    @override
+    def material(self, data: Path, duration: float) -> tuple[Material, Truth]:
+        def logs(
+            wrongs: Sequence[Wrong], motions: Sequence[str], seed: int, label: str
+        ) -> tuple[Recording, ...]:
+            return tuple(
+                self.log(wrongs, motion, seed + 10 * k, f"{label}_{k}", duration).declared(
+                    session=label
+                )
+                for k, motion in enumerate(motions)
+            )
+
+        tests = logs(self.wrongs, self.tests, self.seed, "test")
+        references = logs((), self.references, self.seed + 100, "healthy")
+        return Material(self.file, tests, references), self.truth
 
 
 P = TypeVar("P", bound=CasePlan)

@@ -17,7 +17,7 @@ import mujoco
 import numpy as np
 
 from hyperleg_design.validation.benchmark.case import Recording
-from hyperleg_design.validation.newcomers.plant import Wrong
+from hyperleg_design.validation.newcomers.plant import Wrong, rise
 from hyperleg_design.validation.newcomers.point_mass import add_point_mass
 from hyperleg_design.validation.newcomers.recorded import recorded
 
@@ -103,7 +103,7 @@ def _waves(rng: np.random.Generator, clock: np.ndarray) -> np.ndarray:
             share * np.sin(2 * np.pi * rng.uniform(low, high) * clock + rng.uniform(0, 6.28))
             for low, high, share in ((0.1, 0.2, 0.5), (0.3, 0.6, 0.4), (0.9, 1.6, 0.12))
         )
-        columns.append(middle + swing * wave * _rise(clock / 1.5))
+        columns.append(middle + swing * wave * rise(clock / 1.5))
     return np.array(columns).T
 
 
@@ -113,12 +113,7 @@ def _draws(rng: np.random.Generator, clock: np.ndarray) -> np.ndarray:
     shape = 0.5 * np.array(
         [1.2 * np.sin(phase), np.sin(2 * phase + 1), np.cos(phase), np.sin(phase + 2)]
     )
-    return np.asarray(MIDDLE + 0.8 * SWING * shape.T * _rise(clock)[:, None])
-
-
-def _rise(clock: np.ndarray) -> np.ndarray:
-    clipped = np.clip(clock, 0, 1)
-    return np.asarray(clipped**2 * (3 - 2 * clipped))
+    return np.asarray(MIDDLE + 0.8 * SWING * shape.T * rise(clock)[:, None])
 
 
 MOTIONS: dict[str, Callable[[np.random.Generator, np.ndarray], np.ndarray]] = {

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 import mujoco
 from typing_extensions import override
 
-from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
+from hyperleg_design.validation.benchmark.case import Case, Fault, Recording
 from hyperleg_design.validation.newcomers import crane
 from hyperleg_design.validation.newcomers.case_plan import (
-    CasePlan,
+    MotionPlan,
     at_all_joints,
     development_cases,
     single,
@@ -30,7 +30,7 @@ OTHER = ("draws", "draws")
 
 
 @dataclass(frozen=True)
-class CranePlan(CasePlan):
+class CranePlan(MotionPlan):
     """One case of the crane."""
 
     tests: tuple[str, ...] = USUAL
@@ -40,6 +40,7 @@ class CranePlan(CasePlan):
     commands: bool = True
     """Whether logs hold what the controllers ask for."""
     robot = "crane"
+    file = crane.XML
 
     @property
     @override
@@ -64,28 +65,12 @@ class CranePlan(CasePlan):
         return fault_of(what, (JOINTS[j], MOTORS[j]), size, values)
 
     @override
-    def material(self, data: Path, duration: float) -> tuple[Material, Truth]:
-        tests = self._logs(self.wrongs, self.tests, self.seed, "test", duration)
-        references = self._logs((), self.references, self.seed + 100, "healthy", duration)
-        return Material(crane.XML, tests, references), self.truth
-
-    def _logs(
-        self,
-        wrongs: tuple[Wrong, ...],
-        motions: tuple[str, ...],
-        seed: int,
-        label: str,
-        duration: float,
-    ) -> tuple[Recording, ...]:
-        """One log a motion, all of one crane."""
+    def log(
+        self, wrongs: Sequence[Wrong], motion: str, seed: int, label: str, duration: float
+    ) -> Recording:
         hidden = () if self.commands else ("motor_torque_command",)
-        runs = (
-            Run(motion, self.drive, seed + 10 * k, self.seed, f"{label}_{k}", duration)
-            for k, motion in enumerate(motions)
-        )
-        return tuple(
-            crane.simulate(wrongs, run).declared(session=label).without(*hidden) for run in runs
-        )
+        run = Run(motion, self.drive, seed, self.seed, label, duration)
+        return crane.simulate(wrongs, run).without(*hidden)
 
 
 _one, _each = partial(single, CranePlan), partial(at_all_joints, CranePlan, len(JOINTS))

@@ -57,6 +57,19 @@ def everywhere(wrongs: Sequence[Wrong]) -> bool:
     return len(wrongs) > 1 and len({wrong.what for wrong in wrongs}) == 1
 
 
+def rise(clock: np.ndarray) -> np.ndarray:
+    """Rise from 0 to 1 between the times 0 and 1, smoothly at both.
+
+    Args:
+        clock: `(t,)`.
+
+    Returns:
+        `(t,)`.
+    """
+    share = np.clip(clock, 0, 1)
+    return np.asarray(share**2 * (3 - 2 * share))
+
+
 def motion(robot: Robot, rng: np.random.Generator) -> np.ndarray:
     """Targets of slow and fast swings with pauses `(t, n)` [rad], one row a step.
 
@@ -89,14 +102,14 @@ def _smooth(robot: Robot, rng: np.random.Generator, clock: np.ndarray) -> np.nda
     """Swings whose own time stands still for a while every five seconds, without a jump."""
     pace = np.clip((np.abs((clock - 2) % 5 - 2.5) - 0.4) / 0.5, 0, 1)
     own = np.cumsum(pace * pace * (3 - 2 * pace)) * STEP
-    rise = np.clip(clock, 0, 1)
+    begun = np.clip(clock, 0, 1)
     columns = []
     for middle, swing in zip(robot.middle, robot.swing, strict=True):
         wave = np.zeros_like(clock)
         for (low, high), share in (((0.12, 0.25), 0.5), ((0.4, 0.8), 0.35), ((1.2, 2.2), 0.1)):
             frequency, phase = rng.uniform(low, high), rng.uniform(0, 2 * np.pi)
             wave += share * np.sin(2 * np.pi * frequency * own + phase)
-        columns.append(middle + swing * wave * rise * rise * (3 - 2 * rise))
+        columns.append(middle + swing * wave * begun * begun * (3 - 2 * begun))
     return np.array(columns).T
 
 

@@ -6,6 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hyperleg_design.validation.newcomers.plant import rise
+
 LEGS = ("FR", "FL", "RR", "RL")
 """Front and rear, right and left."""
 HIP = np.array([[0.1805, -0.047], [0.1805, 0.047], [-0.1805, -0.047], [-0.1805, 0.047]])
@@ -71,11 +73,6 @@ def _standing(clock: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return trunk, feet
 
 
-def _rise(clock: np.ndarray) -> np.ndarray:
-    share = np.clip(clock, 0, 1)
-    return np.asarray(share**2 * (3 - 2 * share))
-
-
 def _waves(rng: np.random.Generator, clock: np.ndarray, size: np.ndarray) -> np.ndarray:
     """Sums of three sines a coordinate `(t, 6)`, from rest."""
     out = np.zeros((len(clock), 6))
@@ -83,7 +80,7 @@ def _waves(rng: np.random.Generator, clock: np.ndarray, size: np.ndarray) -> np.
         for (low, high), share in (((0.15, 0.3), 0.55), ((0.4, 0.8), 0.35), ((1.2, 1.9), 0.12)):
             phase = 2 * np.pi * rng.uniform(low, high) * clock + rng.uniform(0, 6.28)
             out[:, k] += size[k] * share * np.sin(phase)
-    return out * _rise(clock / 1.5)[:, None]
+    return out * rise(clock / 1.5)[:, None]
 
 
 def _sway(rng: np.random.Generator, clock: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ import mujoco
 import numpy as np
 
 from hyperleg_design.validation.benchmark.case import Recording
-from hyperleg_design.validation.newcomers.plant import Wrong
+from hyperleg_design.validation.newcomers.plant import Wrong, rise
 from hyperleg_design.validation.newcomers.point_mass import add_point_mass
 from hyperleg_design.validation.newcomers.recorded import recorded
 
@@ -111,7 +111,7 @@ def _triangles(rng: np.random.Generator, clock: np.ndarray) -> np.ndarray:
     for middle, swing in zip(MIDDLE, SWING, strict=True):
         phase = (clock / rng.uniform(3, 7) + 0.25) % 1
         wave = 1 - 4 * np.abs(phase - 0.5)
-        columns.append(middle + 0.8 * swing * wave * _rise(clock / 2))
+        columns.append(middle + 0.8 * swing * wave * rise(clock / 2))
     return np.array(columns).T
 
 
@@ -122,7 +122,7 @@ def _chirp(rng: np.random.Generator, clock: np.ndarray) -> np.ndarray:
         rate = 0.1 + rng.uniform(0.9, 1.6) * clock / clock[-1]
         turns = np.cumsum(rate) * STEP
         size = 0.6 / (1 + 1.2 * rate)
-        columns.append(middle + swing * size * np.sin(2 * np.pi * turns) * _rise(clock))
+        columns.append(middle + swing * size * np.sin(2 * np.pi * turns) * rise(clock))
     return np.array(columns).T
 
 
@@ -134,13 +134,8 @@ def _waves(rng: np.random.Generator, clock: np.ndarray) -> np.ndarray:
             share * np.sin(2 * np.pi * rng.uniform(low, high) * clock + rng.uniform(0, 6.28))
             for low, high, share in ((0.05, 0.12, 0.5), (0.15, 0.35, 0.35), (0.5, 0.9, 0.1))
         )
-        columns.append(middle + swing * wave * _rise(clock / 1.5))
+        columns.append(middle + swing * wave * rise(clock / 1.5))
     return np.array(columns).T
-
-
-def _rise(clock: np.ndarray) -> np.ndarray:
-    clipped = np.clip(clock, 0, 1)
-    return np.asarray(clipped**2 * (3 - 2 * clipped))
 
 
 MOTIONS: dict[str, Callable[[np.random.Generator, np.ndarray], np.ndarray]] = {

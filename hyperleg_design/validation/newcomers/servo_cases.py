@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 from typing_extensions import override
 
-from hyperleg_design.validation.benchmark.case import Case, Fault, Material, Recording, Truth
+from hyperleg_design.validation.benchmark.case import Case, Fault, Recording
 from hyperleg_design.validation.newcomers import servo_arm
 from hyperleg_design.validation.newcomers.case_plan import (
-    CasePlan,
+    MotionPlan,
     at_all_joints,
     development_cases,
     single,
@@ -29,12 +29,13 @@ OTHER = ("chirp", "waves")
 
 
 @dataclass(frozen=True)
-class ServoPlan(CasePlan):
+class ServoPlan(MotionPlan):
     """One case of the servo arm."""
 
     tests: tuple[str, ...] = USUAL
     references: tuple[str, ...] = USUAL
     robot = "servos"
+    file = servo_arm.XML
 
     @property
     @override
@@ -56,25 +57,10 @@ class ServoPlan(CasePlan):
         return fault_of(what, (JOINTS[j], BODIES[j]), size, values)
 
     @override
-    def material(self, data: Path, duration: float) -> tuple[Material, Truth]:
-        tests = self._logs(self.wrongs, self.tests, self.seed, "test", duration)
-        references = self._logs((), self.references, self.seed + 100, "healthy", duration)
-        return Material(servo_arm.XML, tests, references), self.truth
-
-    def _logs(
-        self,
-        wrongs: tuple[Wrong, ...],
-        motions: tuple[str, ...],
-        seed: int,
-        label: str,
-        duration: float,
-    ) -> tuple[Recording, ...]:
-        """One log a motion, all of one arm."""
-        runs = (
-            Run(motion, seed + 10 * k, self.seed, f"{label}_{k}", duration)
-            for k, motion in enumerate(motions)
-        )
-        return tuple(servo_arm.simulate(wrongs, run).declared(session=label) for run in runs)
+    def log(
+        self, wrongs: Sequence[Wrong], motion: str, seed: int, label: str, duration: float
+    ) -> Recording:
+        return servo_arm.simulate(wrongs, Run(motion, seed, self.seed, label, duration))
 
 
 _one, _each = partial(single, ServoPlan), partial(at_all_joints, ServoPlan, len(JOINTS))
