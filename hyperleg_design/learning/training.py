@@ -307,6 +307,7 @@ class Training:
     def _start_from(self, start: StartPolicy) -> None:
         warm, columns = self.preset.warm_start, self.environment.observation_columns
         check_posture(start, self.task.posture_deg)
+        start = start.toward(self.task.name)
         same = start.commands == task_mapping(self.task)["commands"]["kind"]
         command = None if same else np.array([float(warm.forward), 0.0, 0.0])
         start_actor(

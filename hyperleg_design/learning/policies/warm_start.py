@@ -22,7 +22,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -78,6 +78,17 @@ class StartPolicy:
     """Critic of the same training; None where there is none beside the policy."""
     seen: float = SEEN
     """Samples that its normaliser counts for at the start."""
+
+    def toward(self, task: str) -> StartPolicy:
+        """This policy for a training of some task: in its own task it has seen what comes, and a
+        normaliser that follows the first episodes would take its skill away.
+
+        Args:
+            task: name of the task.
+        """
+        if self.source["task"] != task:
+            return self
+        return replace(self, seen=max(float(self.source["steps"]), self.seen))
 
 
 @dataclass(frozen=True, eq=False)

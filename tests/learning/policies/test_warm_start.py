@@ -322,6 +322,12 @@ def test_a_conditioned_policy_keeps_the_scale_of_its_inputs(tmp_path: Path) -> N
     assert read_start(find_policy("walk_upright-toe-1"), design).seen == SEEN
 
 
+def test_a_policy_keeps_the_scale_of_its_inputs_in_its_own_task() -> None:
+    start = read_start(find_policy("walk_upright-toe-1"))
+    assert start.toward("t_test_guided").seen == SEEN
+    assert start.toward("walk_upright").seen == float(start.source["steps"]) > SEEN
+
+
 def test_a_conditioned_policy_starts_one_design_inside_its_ranges(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"conditioned on its design.*one design only"):
         train("walk_upright", "toe", 0, "designs", tmp_path, start=CONDITIONED, designs="toe")
