@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 PREFERRED = {"walk": ("walk_upright", "walk"), "t_test": ("t_test_free", "t_test")}
 """Groups whose policies stand for a kind of protocol, the best first; other groups of that name's
 beginning come after them."""
-GUIDED = "_guided"
-"""Ending of groups whose policies others only start from; they stand for no protocol."""
+ONLY_STARTS = ("_guided", "_first")
+"""Endings of groups whose policies others only start from; they stand for no protocol."""
 _TASKS = {
     ("hyperleg", "walk"): ("walk", "walk"),
     ("hyperleg", "t_test"): ("t_test", "goal"),
@@ -93,7 +93,7 @@ def trained_names(design: RobotDesign) -> tuple[str, ...]:
 
 
 def _stands_for(group: str, kind: str) -> bool:
-    return group == kind or (group.startswith(kind) and not group.endswith(GUIDED))
+    return group == kind or (group.startswith(kind) and not group.endswith(ONLY_STARTS))
 
 
 def _remedy(kind: str, design: RobotDesign) -> str:

@@ -91,7 +91,7 @@ class Training:
         """Processor time of the same [s]: the clock that other work on the machine leaves alone."""
         columns = self.environment.observation_columns["critic"]
         self._takes_critic = bool(start and fits_critic(self.algorithm.critic, start, columns))
-        fresh = start is not None and not self._takes_critic
+        fresh = start is not None and not (self._takes_critic and start.own_critic)
         self._critic_only = int(preset.warm_start.critic_iterations) if fresh else 0
         if (folder / CHECKPOINT).exists():
             self._load()

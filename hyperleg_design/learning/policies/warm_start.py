@@ -14,7 +14,8 @@ into its layers (`fold_design`), and into those of its critic.
 A finished training writes its critic beside its policy. A training whose critic observes the same,
 or the robot's design besides, and has the same layers takes over that critic and the deviation of
 the actions, and so goes on where the first one ended, but for the optimiser's moments and the
-simulations' states.
+simulations' states. Where the policy has no critic, it takes that of a training with another seed,
+which learns alone for some iterations, too.
 """
 
 from __future__ import annotations
@@ -75,9 +76,11 @@ class StartPolicy:
     """What `run.json` says of it: task, variant, seed, steps, commit and SHA-256 of the file, and
     of its critic's."""
     critic: StartCritic | None = None
-    """Critic of the same training; None where there is none beside the policy."""
+    """Critic of the same training, else of one with another seed; None where neither is there."""
     seen: float = SEEN
     """Samples that its normaliser counts for at the start."""
+    own_critic: bool = True
+    """Whether the critic is of the same training, not of one with another seed."""
 
     def toward(self, task: str) -> StartPolicy:
         """This policy for a training of some task: in its own task it has seen what comes, and a
@@ -110,7 +113,8 @@ class StartCritic:
 
 
 def read_start(path: str | Path, design: RobotDesign | None = None) -> StartPolicy:
-    """Read a policy that `hyperleg train` exported, and the critic beside it, if any.
+    """Read a policy that `hyperleg train` exported, and the critic beside it, else that of another
+    seed, if any.
 
     Args:
         path: of the ONNX file.
@@ -148,10 +152,8 @@ def read_start(path: str | Path, design: RobotDesign | None = None) -> StartPoli
     task = json.loads(metadata["task"])
     source |= {"task": task["name"], "sha256": digest}
     critic = None
-    if path.name == POLICY and (path.parent / CRITIC).is_file():
-        extra, judged, source["critic_sha256"], modulation = _read_network(
-            path.parent / CRITIC, CRITIC_FORMAT
-        )
+    if file := _critic_file(path):
+        extra, judged, source["critic_sha256"], modulation = _read_network(file, CRITIC_FORMAT)
         if numbers:
             judged = fold_design(judged, modulation, numbers)
         critic = StartCritic(
@@ -167,7 +169,19 @@ def read_start(path: str | Path, design: RobotDesign | None = None) -> StartPoli
         critic=critic,
         # scaled for many designs; followed soon, those of one would turn a policy that cannot yet
         seen=max(float(metadata["steps"]), SEEN) if numbers else SEEN,
+        own_critic=file is None or file.parent == path.parent,
     )
+
+
+def _critic_file(policy: Path) -> Path | None:
+    """The critic beside the last policy of a training, else that of the same task and robot with
+    another seed: the folders of trainings end with it.
+    """
+    if policy.name != POLICY:
+        return None
+    name, _, seed = policy.parent.name.rpartition("-")
+    others = policy.parent.parent.glob(f"{name}-[0-9]*/{CRITIC}") if seed.isdigit() else ()
+    return next((one for one in (policy.parent / CRITIC, *sorted(others)) if one.is_file()), None)
 
 
 def _read_network(

@@ -5,7 +5,7 @@ import yaml
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.plans.analysis_plan import load_plan
-from hyperleg_design.evaluation.policy_choice import GUIDED
+from hyperleg_design.evaluation.policy_choice import ONLY_STARTS
 from hyperleg_design.evaluation.protocol import load_protocol
 from hyperleg_design.learning.campaigns.campaign import load_campaign, shipped_starts
 from hyperleg_design.simulation.tasks import load_task
@@ -78,19 +78,20 @@ def test_bad_campaigns(change: dict, field: str, write) -> None:
 def test_the_t_tests_of_the_fair_study_are_those_of_the_plan() -> None:
     runs, plan = load_campaign("campaign_t_test").runs, load_plan()
     assert {run.design for run in runs} == set(plan.designs)
-    assert len(runs) == 4 * len(plan.designs) * plan.seeds["t_test"]
+    assert len(runs) == 5 * len(plan.designs) * plan.seeds["t_test"]
     assert {(r.task, r.preset, r.start) for r in runs if not r.compared} == {
         ("walk_guided", "guided", ""),
         ("walk_upright", "study", "walk_guided"),
         ("t_test_guided", "t_test_guided", "walk_upright"),
+        ("t_test_free", "t_test", "t_test_guided"),
     }
     assert {(r.task, r.preset, r.start) for r in runs if r.compared} == {
-        ("t_test_free", "t_test", "t_test_guided")
+        ("t_test_free", "t_test_course", "t_test_first")
     }
     assert load_protocol("t_test_fast").speed_cap == load_task("t_test_free").commands.speed_cap
 
 
 def test_a_start_is_compared_in_no_shipped_campaign() -> None:
     starts = shipped_starts()
-    assert starts == {"walk_guided", "t_test_guided"}
-    assert all(group.endswith(GUIDED) for group in starts)  # by which evaluation knows them
+    assert starts == {"walk_guided", "t_test_guided", "t_test_first"}
+    assert all(group.endswith(ONLY_STARTS) for group in starts)  # by which evaluation knows them

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -326,6 +327,20 @@ def test_a_policy_keeps_the_scale_of_its_inputs_in_its_own_task() -> None:
     start = read_start(find_policy("walk_upright-toe-1"))
     assert start.toward("t_test_guided").seen == SEEN
     assert start.toward("walk_upright").seen == float(start.source["steps"]) > SEEN
+
+
+def test_a_policy_without_a_critic_takes_that_of_another_seed(tmp_path: Path) -> None:
+    for seed in "13":
+        shutil.copytree(find_policy("walk_upright-toe-1").parent, tmp_path / f"walk-toe-{seed}")
+    own, other = (tmp_path / f"walk-toe-{seed}/policy.onnx" for seed in "13")
+    assert read_start(own).own_critic
+    own.with_name("critic.onnx").unlink()
+    start = read_start(own)
+    assert start.critic is not None
+    assert not start.own_critic
+    assert start.source["critic_sha256"] == read_start(other).source["critic_sha256"]
+    other.with_name("critic.onnx").rename(tmp_path / "critic.onnx")
+    assert read_start(own).critic is None
 
 
 def test_a_conditioned_policy_starts_one_design_inside_its_ranges(tmp_path: Path) -> None:
