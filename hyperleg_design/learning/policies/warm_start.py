@@ -181,7 +181,8 @@ def _critic_file(policy: Path) -> Path | None:
         return None
     name, _, seed = policy.parent.name.rpartition("-")
     others = policy.parent.parent.glob(f"{name}-[0-9]*/{CRITIC}") if seed.isdigit() else ()
-    return next((one for one in (policy.parent / CRITIC, *sorted(others)) if one.is_file()), None)
+    files = (policy.parent / CRITIC, *sorted(others))
+    return next((file for file in files if file.is_file()), None)
 
 
 def _read_network(
