@@ -197,6 +197,33 @@ def given(signals: Signals, motor: int) -> np.ndarray:
     return np.where(np.isfinite(asked), limited(signals, motor, asked), believed)
 
 
+def braked(signals: Signals, motor: int) -> np.ndarray:
+    """Torque by which the windings of a motor without current control brake it, where `given` holds
+    it; it grows with the square of the torque constant.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The torque `(t,)` [Nm]; 0 of motors with current control, or whose torque is logged.
+    """
+    subject = signals.subject
+    logged = signals.target is None or is_measured(signals, motor) or is_logged(signals, motor)
+    if logged or not np.isfinite(subject.supply[motor]):
+        return np.zeros(len(signals.time))
+    own = subject.motor_from_joint[motor] != 0
+    braking = (winding_damping(subject) * subject.motor_from_joint[motor])[own]
+    return np.nan_to_num(signals.sensed[:, own] @ braking)
+
+
+def winding_damping(subject: Subject) -> np.ndarray:
+    """Damping of the joints' controllers `(n,)` [Nms/rad], which is that of the windings where a
+    motor has no current control.
+    """
+    return np.where(subject.passive, 0.0, np.nan_to_num(subject.gains[:, 1]))
+
+
 def motor_position(signals: Signals, motor: int) -> np.ndarray:
     """M^T q of one motor `(t,)` [rad].
 

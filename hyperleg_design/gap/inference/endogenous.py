@@ -89,12 +89,13 @@ def joined(
         terms = [term for _, term in own]
         longest = max(terms, key=lambda term: (term.slope.shape[1], term.number))
         ticks = longest.slope.shape[1]  # logs under test come first in all of them
-        level = np.zeros(ticks)
+        level, slope = np.zeros(ticks), np.zeros((sum(len(t.slope) for t in terms), ticks))
+        row = 0
         for term in terms:
             level[: term.slope.shape[1]] += term.level
-        slope = [np.pad(term.slope, ((0, 0), (0, ticks - term.slope.shape[1]))) for term in terms]
-        shows = min(term.shows for term in terms)
-        whole = replace(longest, slope=np.concatenate(slope), level=level, shows=shows)
+            slope[row : row + len(term.slope), : term.slope.shape[1]] = term.slope
+            row += len(term.slope)
+        whole = replace(longest, slope=slope, level=level, shows=min(term.shows for term in terms))
         found.append(([place for place, _ in own], whole))
     return found
 

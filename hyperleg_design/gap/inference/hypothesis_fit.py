@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -39,6 +39,16 @@ CLOSE = 0.02
 """Step of a nonlinear fit, over usual sizes, from which it has converged [-]."""
 EASED = 2.0
 """Noise under test over a healthy robot's, in variance, at most where a fit begins [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Fitted:
+    """Scales and the causes at them."""
+
+    scales: tuple[Scales, ...]
+    solution: Solution
+    moved: np.ndarray
+    """Rows of causes that are not settled yet `(k,)` of bool."""
 
 
 class HypothesisFit:
@@ -216,53 +226,73 @@ class HypothesisFit:
             candidates: of the hypothesis.
             scales: to begin with.
         """
+        channels = self.evidence.channels
         stack = Stack.of([c for one in candidates for c in one.causes], self.evidence.weight)
-        crossing = Crossing.of(self.evidence.channels, stack.rows)
-        found = [self._fit(candidates, stack, crossing, scales)]
+        crossing = Crossing.of(channels, stack.rows)
+        begun = [self._begun(stack, crossing, scales)]
         clear = eased(self.evidence, scales, self.rules)
         if any(
             len(seen) and np.any(one.noise < own.noise)
             for one, own, seen in zip(clear, scales, crossing.shown, strict=True)
         ):
-            found.append(self._fit(candidates, stack, crossing, clear))
-        return max(found, key=lambda one: one.score)
-
-    def _fit(
-        self,
-        candidates: Sequence[Candidate],
-        stack: Stack,
-        crossing: Crossing,
-        scales: Sequence[Scales],
-    ) -> Hypothesis:
-        """As `fit`, from the given scales."""
-        channels, rules = self.evidence.channels, self.rules.search
-        found = list(scales)
-        solution = self.at_scales(stack, crossing, found)
-        moved = np.ones(crossing.count, bool)
-        for turn in range(rules.rounds):
-            left = crossing.left(channels, _sizes(stack, solution))
-            sweeps, steps = (2, STEPS) if turn == 0 else (1, STEPS[-1:])
-            each = zip(channels, found, left, crossing.shown, strict=True)
-            found = [
-                fitted(channel, own, self.rules, rest, sweeps, steps) if moved[seen].any() else own
-                for channel, own, rest, seen in each
-            ]
-            before = solution.theta
-            solution = self.at_scales(stack, crossing, found, before)
-            deviation = np.sqrt(np.maximum(np.diag(solution.covariance), 1e-300))
-            moved[: len(before)] = np.abs(solution.theta - before) >= rules.settled * deviation
-            moved[len(before) :] = False
-            if not moved.any():
+            begun.append(self._begun(stack, crossing, clear))
+        found = max(begun, key=lambda one: self._likelihood(stack, crossing, one))
+        for _ in range(self.rules.search.rounds - 1):
+            if not found.moved.any():
                 break
-        left = crossing.left(channels, _sizes(stack, solution))
-        likelihood = solution.occam + sum(
-            channel.log_posterior(own, self.rules, rest) - ground
-            for channel, own, rest, ground in zip(channels, found, left, self.ground, strict=True)
-        )
-        sizes = solution.theta, solution.covariance
-        hypothesis = Hypothesis(tuple(candidates), *sizes, tuple(found), float(likelihood), 0.0)
+            found = self._round(stack, crossing, found, 1, STEPS[-1:], again=True)
+        likelihood = self._likelihood(stack, crossing, found)
+        sizes = found.solution.theta, found.solution.covariance
+        hypothesis = Hypothesis(tuple(candidates), *sizes, found.scales, likelihood, 0.0)
         prior = log_prior(hypothesis, self.evidence, self.rules, self.count)
         return replace(hypothesis, log_prior=prior)
+
+    def _begun(self, stack: Stack, crossing: Crossing, scales: Sequence[Scales]) -> _Fitted:
+        """Causes at given scales, and after one round."""
+        solution = self.at_scales(stack, crossing, scales)
+        begun = _Fitted(tuple(scales), solution, np.ones(crossing.count, bool))
+        return self._round(stack, crossing, begun, 2, STEPS)
+
+    def _round(
+        self,
+        stack: Stack,
+        crossing: Crossing,
+        begun: _Fitted,
+        sweeps: int,
+        steps: tuple[float, ...],
+        again: bool = False,
+    ) -> _Fitted:
+        """Fit the scales of the channels in which a cause moved, then the causes, see `fitted`."""
+        channels = self.evidence.channels
+        left = crossing.left(channels, _sizes(stack, begun.solution))
+        scales = tuple(
+            fitted(channel, own, self.rules, rest, sweeps, steps, again)
+            if begun.moved[seen].any()
+            else own
+            for channel, own, rest, seen in zip(
+                channels, begun.scales, left, crossing.shown, strict=True
+            )
+        )
+        before = begun.solution.theta
+        solution = self.at_scales(stack, crossing, scales, before)
+        deviation = np.sqrt(np.maximum(np.diag(solution.covariance), 1e-300))
+        moved = np.zeros(crossing.count, bool)
+        moved[: len(before)] = (
+            np.abs(solution.theta - before) >= self.rules.search.settled * deviation
+        )
+        return _Fitted(scales, solution, moved)
+
+    def _likelihood(self, stack: Stack, crossing: Crossing, found: _Fitted) -> float:
+        """Log evidence of causes at scales over that of no cause [nat]."""
+        channels = self.evidence.channels
+        left = crossing.left(channels, _sizes(stack, found.solution))
+        each = zip(channels, found.scales, left, self.ground, strict=True)
+        return found.solution.occam + float(
+            sum(
+                channel.log_posterior(own, self.rules, rest) - ground
+                for channel, own, rest, ground in each
+            )
+        )
 
 
 def _sizes(stack: Stack, solution: Solution) -> np.ndarray:

@@ -16,7 +16,7 @@ from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.endogenous import Factor, factors_of, held_back_whole
 from hyperleg_design.gap.inference.fit import Cause
-from hyperleg_design.gap.inference.hypothesis import Name, Solution, Stack, solve
+from hyperleg_design.gap.inference.hypothesis import ALIKE, Name, Solution, Stack, solve
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.shrinking import Shrinking
 
@@ -265,12 +265,41 @@ class Promises:
             weights = np.concatenate([effect.in_span(name[1], subject, nearest), starts.weights])
             turn = block_diag(np.eye(rows), weights)
             products, scaling = turn @ products @ turn.T, [()] * len(values)
+        rules, plain = self.rules.search, np.array([not scaled for scaled in scaling])
+        worth = self._worth(base, products, rows + np.arange(len(values)))
+        if plain.all() and worth.max() <= rules.least:
+            return []
+        promising = np.argsort(np.where(plain, -worth, -np.inf), kind="stable")
+        promising = promising[: max(2 * rules.starts, int((~plain).sum()))]
         promises = []
-        for number, (start, scaled) in enumerate(zip(values, scaling, strict=True)):
-            solution = self._solved(base, products, np.array([rows + number]), None, scaled)
+        for number in sorted(promising.tolist()):
+            solution = self._solved(
+                base, products, np.array([rows + number]), None, scaling[number]
+            )
             gain = solution.gain - base.gain
-            promises.append(Promise(*name, number, gain, tuple(start.tolist())))
+            promises.append(Promise(*name, number, gain, tuple(values[number].tolist())))
         return promises
+
+    @staticmethod
+    def _worth(base: _Beside, products: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """What single columns gain at most beside the hypothesis, where they scale no torque.
+
+        Args:
+            base: the hypothesis.
+            products: of the residual, its rows, and the columns.
+            place: of these.
+        """
+        right, square = products[place, 0].copy(), np.diag(products)[place].copy()
+        if base.stack is not None and base.solution is not None:
+            if base.stack.constant_last:
+                right -= products[place, 1 + len(base.stack.columns)]
+            own = np.arange(1, 1 + len(base.stack.columns))
+            between = products[np.ix_(own, place)]
+            right -= base.solution.theta @ between
+            square -= np.sum(between * (base.solution.covariance @ between), axis=0)
+        square = np.maximum(square, ALIKE * np.diag(products)[place])
+        size = np.clip(right / np.maximum(square, np.finfo(float).tiny), 0.0, LARGEST)
+        return np.asarray(right * size - 0.5 * square * size**2)
 
     def _solved(
         self,

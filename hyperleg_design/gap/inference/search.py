@@ -59,6 +59,9 @@ class Search:
         self.promises = Promises(evidence, rules, self.traces, threads)
         self.fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.fits.nothing}
         """By the names of their candidates."""
+        self._short: dict[Name, tuple[float, float]] = {}
+        """Of causes that were worse than none when they were fitted last: the promise that would
+        have been enough, and the score of the hypothesis beside which they were fitted [nat]."""
 
     def result(self) -> Result:
         """Search forward until no further cause is worth its prior, drop what is not, and put
@@ -151,6 +154,7 @@ class Search:
         flexible = [name for name in promising if WEIGHED[name[0]].flexible]
         chosen = [name for name in promising if name not in flexible][: rules.candidates]
         chosen += flexible[: rules.flexible]
+        chosen = [name for name in chosen if self._hopeful(promises[name], current)]
         fitted = screen.spread(
             lambda name: self.best_of(promises[name][: rules.starts], current), chosen, self.threads
         )
@@ -168,6 +172,15 @@ class Search:
         most = self.rules.search.standing if standing else self.rules.search.causes
         return sum(one.standing == standing for one in current.candidates) < most
 
+    def _hopeful(self, promises: Sequence[Promise], current: Hypothesis) -> bool:
+        """Whether a cause that was worse than none when it was fitted last may be worth its prior
+        now: it promises more than then, or what has been gained since is what it lacked.
+        """
+        if self._known((*current.candidates, promises[0])) is not None:
+            return True
+        enough, score = self._short.get(promises[0].name, (-np.inf, 0.0))
+        return promises[0].gain + max(current.score - score, 0.0) > enough
+
     def best_of(self, promises: Sequence[Promise], current: Hypothesis) -> Hypothesis | None:
         """The best fit of an effect at a place beside a hypothesis, from several starts."""
         known = self._known((*current.candidates, promises[0]))
@@ -182,7 +195,12 @@ class Search:
         fits_of_starts = [
             self.fits.fit((*current.candidates, one), current.scales) for one in apart
         ]
-        return max(fits_of_starts, key=lambda one: one.score, default=None)
+        best = max(fits_of_starts, key=lambda one: one.score, default=None)
+        self._short.pop(promises[0].name, None)
+        if best is not None and best.score < current.score:
+            enough = promises[0].gain + current.score - best.score
+            self._short[promises[0].name] = enough, current.score
+        return best
 
     def everywhere(
         self, promises: Mapping[Name, Sequence[Promise]], current: Hypothesis

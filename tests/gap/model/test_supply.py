@@ -170,3 +170,31 @@ def test_one_motor_on_a_file_of_somebody_else(tmp_path):
         3.0,
         8.0,
     )
+
+
+def test_a_weaker_motor_is_braked_less_by_the_square(servo):
+    """A motor whose constant is 0.8 of the declared one, where no current is logged."""
+    weak = 0.8
+
+    def positions(seed):
+        log = run(seed=seed)
+        signals = {k: v for k, v in log.signals.items() if k != "motor_current/swing"}
+        volts, stall, free = log.metadata.supply["swing"]
+        metadata = log.metadata.changed(
+            gains={"swing": (STIFFNESS / weak, DAMPING / weak**2)},
+            torque_constant={},
+            supply={"swing": (volts, stall / weak, free * weak)},
+        )
+        return log.changed(signals=signals, metadata=metadata)
+
+    signals = conditioned(servo, positions(0), positions(1))
+    found = diagnose_signals(signals, threads=1)
+    assert [(c.effect, c.location) for c in found.causes] == [("torque_constant", "swing")]
+    assert found.causes[0].parameters["scale"].value == pytest.approx(weak, abs=0.03)
+    subject, windows = signals[0].subject, short_windows(signals[0], 0.5)
+    change = effect("torque_constant").alteration("swing", np.array([weak, 0.0]), subject)
+    played = replay(signals[0], ((), (change,)), windows).errors(signals[0])[0]
+    (right,) = conditioned(servo, run())
+    least = np.std(replay(right, windows=short_windows(right, 0.5)).errors(right)[0])
+    assert np.std(played[1]) == pytest.approx(least, rel=1e-3)
+    assert least < 0.3 * np.std(played[0])

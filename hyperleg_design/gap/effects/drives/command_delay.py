@@ -50,7 +50,7 @@ class CommandDelay(Effect):
     kind: ClassVar[str] = "robot"
     summary: ClassVar[str] = "drives follow commands or targets that are some milliseconds old"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("delay", "s", 0.0, 0.0, 0.05, 0.005, "up to 25 ms (PACE, arXiv 2509.06342)"),
+        Parameter("delay", "s", 0.0, 0.0, 0.1, 0.005, "up to 25 ms (PACE, arXiv 2509.06342)"),
         Parameter("late", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=LATE),
     )
     needs: ClassVar[Need] = Need(
@@ -132,7 +132,7 @@ class CommandDelay(Effect):
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """A few delays, of commands and, where they are known, of targets."""
         ways = (0.0, 1.0) if _told(signals, location) else (0.0,)
-        return np.array([[delay, way] for way in ways for delay in (0.003, 0.01, 0.025)])
+        return np.array([[delay, way] for way in ways for delay in (0.003, 0.01, 0.025, 0.06)])
 
 
 def _told(signals: Signals, location: str) -> bool:

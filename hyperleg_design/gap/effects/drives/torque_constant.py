@@ -13,17 +13,20 @@ from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import FRICTION, WITH_LOAD, WITHOUT_DRIVE
 from hyperleg_design.gap.effects.kinds import MotorEffect
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.effects.placed import MotorHooks
+from hyperleg_design.gap.effects.placed import MotorHooks, Placed
 from hyperleg_design.gap.effects.placing import (
     at_motor,
     before_measurement,
+    braked,
     given,
     is_commanded,
     is_measured,
+    winding_damping,
 )
 from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.simulation.alteration import Tick
+from hyperleg_design.simulation.alteration import Alteration, Tick
 from hyperleg_design.simulation.drives.limits import Limits
 
 READING = 1
@@ -31,10 +34,13 @@ READING = 1
 
 
 class _Scaled(MotorHooks):
-    """Scales torque over what the drive takes itself to give, or over what is read from it."""
+    """Scales torque over what the drive takes itself to give, or over what is read from it; and
+    once more that by which the windings brake.
+    """
 
     scale: np.ndarray
     reading: np.ndarray
+    windings: np.ndarray
 
     def prepare(self) -> None:
         super().prepare()
@@ -60,6 +66,9 @@ class _Scaled(MotorHooks):
 
     def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
         torque[:, self.place] *= self.scale
+        if self.windings.any():
+            brake = tick.velocity @ (self.windings * self.machine.motor_from_joint[self.place])
+            torque[:, self.place] -= self.scale * (self.scale - 1.0) * brake
         return torque
 
 
@@ -70,7 +79,8 @@ class TorqueConstant(MotorEffect):
     Either the motor is another one, and its drive knows no more of it than the log (`reading` 0);
     or the constant by which the log's currents are read is wrong, and the drive gives what it was
     asked for (1). Trace: (1 - scale) times the believed torque, in the residual of motion, and with
-    a wrong reading in that of the drive.
+    a wrong reading in that of the drive. Without current control, the windings brake by the square
+    of the constant: (1 - scale) times twice that torque, to first order.
     """
 
     identifier: ClassVar[str] = "torque_constant"
@@ -137,11 +147,19 @@ class TorqueConstant(MotorEffect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         motor = signals.subject.motors.index(location)
         scale, reading = np.atleast_2d(np.asarray(values, float)).T[..., None]
-        lost = (1.0 - scale) * given(signals, motor)
+        lost = (1.0 - scale) * (given(signals, motor) - braked(signals, motor))
         found = at_motor(signals, motor, lost)
         if reading.any() and _told_twice(signals, motor):
             found |= before_measurement(signals, {motor: reading * lost})
         return found
+
+    @override
+    def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
+        scale, reading = np.moveaxis(np.asarray(values, float), -1, 0)
+        driven = np.isfinite(subject.supply[subject.motors.index(location)])
+        windings = winding_damping(subject) * driven
+        constants = {"scale": scale, "reading": reading, "windings": windings}
+        return Placed(location, constants, live=self.hooks)
 
     @override
     def variants(self, signals: Signals, location: str) -> np.ndarray:

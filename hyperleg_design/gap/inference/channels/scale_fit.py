@@ -28,6 +28,7 @@ def fitted(
     residual: Residual | None = None,
     sweeps: int = 3,
     steps: tuple[float, ...] = STEPS,
+    again: bool = False,
 ) -> Scales:
     """Hyperparameters at the maximum of their posterior.
 
@@ -38,6 +39,7 @@ def fitted(
         residual: what is left of the channel's; all of it by default.
         sweeps: of noise and scales in turn.
         steps: of the searches for a scale's logarithm.
+        again: whether nothing unlisted acts where nothing did, so that it is not looked for.
     """
     residual = channel.whole_residual if residual is None else residual
     for _ in range(sweeps):
@@ -46,7 +48,7 @@ def fitted(
         scales = _searched(channel, scales, "standing", rules, likelihood, steps)
         if channel.changes:
             scales = _searched(channel, scales, "change", rules, likelihood, steps)
-    if channel.referenced:
+    if channel.referenced and (scales.new or not again):
         likelihood = channel.likelihood(scales.noise, residual)
         healthy = replace(scales, new=0.0)
         begin = max(scales.new, float(np.log(rules.discrepancy.unlisted)) / 2)
