@@ -72,6 +72,35 @@ def test_gains_are_those_of_all_columns_at_once(constant, alone):
         assert one.gain == pytest.approx(expected - start, rel=1e-7, abs=1e-7)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_the_starts_that_gain_most_are_among_those_solved(seed):
+    rng = np.random.default_rng(seed)
+    channels = [made(rng)[0] for _ in range(2)]
+    size = len(channels[0].samples)
+    weight = rng.uniform(0.5, 2.0, size)
+    evidence = SimpleNamespace(channels=channels, weight=weight)
+    starts = rng.standard_normal((12, size)) + rng.standard_normal(size)
+    traces = {("command_delay", "robot", True): Starts(np.arange(12.0)[:, None], starts)}
+    acting = unbounded("spring", "knee", rng.standard_normal((2, size)))
+    found = Promises(evidence, RULES, traces).beside([acting], (SCALES, SCALES))
+
+    def gain(rows):
+        products = reduced(evidence, (SCALES, SCALES), np.concatenate([acting.columns, rows]))
+        low, high = np.r_[-np.inf, -np.inf, np.zeros(len(rows))], np.full(2 + len(rows), np.inf)
+        high[2:] = LARGEST
+        return solve(products, low, high, np.zeros(len(low), bool), RULES).gain
+
+    stack = Stack.of([acting], weight)
+    acting = replace(acting, columns=stack.columns)
+    alone = gain(np.zeros((0, size)))
+    every = np.array([gain(one[None] * weight) for one in starts]) - alone
+    best = np.argsort(-every)[: RULES.search.starts]
+    solved = {one.variant: one.gain for one in found}
+    for start in best:
+        if every[start] > RULES.search.least:
+            assert solved[start] == pytest.approx(every[start], rel=1e-6, abs=1e-6)
+
+
 def test_a_start_that_scales_torques_is_charged_for_it_as_a_cause_is(search):
     effect, motor = "transmission_ratio", "m_front"
     places = [(effect, motor)]

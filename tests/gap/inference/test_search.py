@@ -107,3 +107,18 @@ def test_a_cause_that_does_not_gain_by_scaling_torques_is_otherwise_the_same(sea
     gains = np.array([[one.factors[0].log(size) for size in sizes] for one in (scaling, found)])
     assert np.abs(gains[0]).max() > 0.1
     assert (gains[1] <= 1e-12).all()
+
+
+def test_a_cause_that_was_worse_than_none_is_fitted_again_when_it_promises_more(search):
+    nothing = search.fits.nothing
+    promises = search.promises.beside((), nothing.scales)
+    fits = ((one, search.best_of([one], nothing)) for one in promises if not search._known([one]))
+    promise, fit = next(pair for pair in fits if pair[1] and pair[1].score < nothing.score)
+    lacking = nothing.score - fit.score
+    assert not search._hopeful([promise], nothing)
+    assert not search._hopeful([replace(promise, gain=promise.gain + 0.9 * lacking)], nothing)
+    assert search._hopeful([replace(promise, gain=promise.gain + 1.1 * lacking)], nothing)
+    better = replace(nothing, log_evidence=nothing.log_evidence + 1.1 * lacking)
+    worse = replace(nothing, log_evidence=nothing.log_evidence - 1.1 * lacking)
+    assert search._hopeful([promise], better)
+    assert not search._hopeful([promise], worse)
