@@ -27,9 +27,7 @@ from hyperleg_design import provenance
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning.learner.algorithm import IterationPPO
 from hyperleg_design.learning.learner.device import HOST, check_device
-from hyperleg_design.learning.policies.warm_start import (
-    read_start,
-)
+from hyperleg_design.learning.policies.start_policy import read_start
 from hyperleg_design.learning.preset import Preset
 from hyperleg_design.learning.preset_file import load_preset
 from hyperleg_design.learning.records.status import (

@@ -17,8 +17,8 @@ from hyperleg_design.learning.design_sampler import DesignSampler
 from hyperleg_design.learning.learner.algorithm import IterationPPO, as_tensors, make_algorithm
 from hyperleg_design.learning.policies.export import CRITIC_FORMAT, export_policy
 from hyperleg_design.learning.policies.policy_metadata import policy_metadata
+from hyperleg_design.learning.policies.start_policy import StartPolicy
 from hyperleg_design.learning.policies.warm_start import (
-    StartPolicy,
     check_posture,
     fits_critic,
     start_actor,

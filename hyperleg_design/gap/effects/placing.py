@@ -186,14 +186,10 @@ def given(signals: Signals, motor: int) -> np.ndarray:
         The torque `(t,)` [Nm].
     """
     believed = signals.believed[:, motor]
-    if signals.target is None or is_measured(signals, motor) or is_logged(signals, motor):
+    parts = _spring_and_damper(signals, motor)
+    if parts is None:
         return believed
-    subject = signals.subject
-    stiffness, damping = np.where(subject.passive[:, None], 0.0, subject.gains).T
-    share = subject.motor_from_joint[motor]
-    own = share != 0
-    spring = (signals.target - signals.position)[:, own] @ (stiffness * share)[own]
-    asked = signals.supplied[:, motor] * spring - signals.sensed[:, own] @ (damping * share)[own]
+    asked = parts[0] - parts[1]
     return np.where(np.isfinite(asked), limited(signals, motor, asked), believed)
 
 
@@ -208,20 +204,24 @@ def braked(signals: Signals, motor: int) -> np.ndarray:
     Returns:
         The torque `(t,)` [Nm]; 0 of motors with current control, or whose torque is logged.
     """
-    subject = signals.subject
-    logged = signals.target is None or is_measured(signals, motor) or is_logged(signals, motor)
-    if logged or not np.isfinite(subject.supply[motor]):
+    parts = _spring_and_damper(signals, motor)
+    if parts is None or not np.isfinite(signals.subject.supply[motor]):
         return np.zeros(len(signals.time))
-    own = subject.motor_from_joint[motor] != 0
-    braking = (winding_damping(subject) * subject.motor_from_joint[motor])[own]
-    return np.nan_to_num(signals.sensed[:, own] @ braking)
+    return np.nan_to_num(parts[1])
 
 
-def winding_damping(subject: Subject) -> np.ndarray:
-    """Damping of the joints' controllers `(n,)` [Nms/rad], which is that of the windings where a
-    motor has no current control.
+def _spring_and_damper(signals: Signals, motor: int) -> tuple[np.ndarray, np.ndarray] | None:
+    """What the controllers of a motor ask for by positions, and what they take off by speeds `(t,)`
+    [Nm] each; None where its torque is logged.
     """
-    return np.where(subject.passive, 0.0, np.nan_to_num(subject.gains[:, 1]))
+    if signals.target is None or is_measured(signals, motor) or is_logged(signals, motor):
+        return None
+    subject = signals.subject
+    stiffness, damping = np.where(subject.passive[:, None], 0.0, subject.gains).T
+    share = subject.motor_from_joint[motor]
+    own = share != 0
+    spring = (signals.target - signals.position)[:, own] @ (stiffness * share)[own]
+    return signals.supplied[:, motor] * spring, signals.sensed[:, own] @ (damping * share)[own]
 
 
 def motor_position(signals: Signals, motor: int) -> np.ndarray:

@@ -91,7 +91,7 @@ class MotionPlan(CasePlan):
     @property
     @abstractmethod
     def file(self) -> str:
-        """The robot's file."""
+        """Text of the robot's MJCF file."""
 
     @abstractmethod
     def log(

@@ -20,7 +20,7 @@ pytest.importorskip("rsl_rl")
 pytest.importorskip("tensorboard")
 
 from hyperleg_design.learning.learner.algorithm import as_tensors  # noqa: E402
-from hyperleg_design.learning.policies.warm_start import SEEN, read_start  # noqa: E402
+from hyperleg_design.learning.policies.start_policy import SEEN, read_start  # noqa: E402
 from hyperleg_design.learning.preset import WarmStart  # noqa: E402
 from hyperleg_design.learning.preset_file import load_preset  # noqa: E402
 from hyperleg_design.learning.train import describe, train  # noqa: E402

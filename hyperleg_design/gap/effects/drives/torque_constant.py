@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Set
+from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -21,12 +22,12 @@ from hyperleg_design.gap.effects.placing import (
     given,
     is_commanded,
     is_measured,
-    winding_damping,
 )
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration, Tick
+from hyperleg_design.simulation.drives.actuation import applied
 from hyperleg_design.simulation.drives.limits import Limits
 
 READING = 1
@@ -40,7 +41,8 @@ class _Scaled(MotorHooks):
 
     scale: np.ndarray
     reading: np.ndarray
-    windings: np.ndarray
+    driven: bool
+    """Whether the motor has no current control."""
 
     def prepare(self) -> None:
         super().prepare()
@@ -66,9 +68,9 @@ class _Scaled(MotorHooks):
 
     def motor_torque(self, torque: np.ndarray, tick: Tick) -> np.ndarray:
         torque[:, self.place] *= self.scale
-        if self.windings.any():
-            brake = tick.velocity @ (self.windings * self.machine.motor_from_joint[self.place])
-            torque[:, self.place] -= self.scale * (self.scale - 1.0) * brake
+        if self.driven:
+            damper = applied(self.machine.motor_from_joint, self.machine.damping * tick.velocity)
+            torque[:, self.place] -= self.scale * (self.scale - 1.0) * damper[:, self.place]
         return torque
 
 
@@ -155,11 +157,10 @@ class TorqueConstant(MotorEffect):
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
-        scale, reading = np.moveaxis(np.asarray(values, float), -1, 0)
-        driven = np.isfinite(subject.supply[subject.motors.index(location)])
-        windings = winding_damping(subject) * driven
-        constants = {"scale": scale, "reading": reading, "windings": windings}
-        return Placed(location, constants, live=self.hooks)
+        placed = super().alteration(location, values, subject)
+        assert isinstance(placed, Placed)
+        driven = bool(np.isfinite(subject.supply[subject.motors.index(location)]))
+        return replace(placed, constants={**placed.constants, "driven": driven})
 
     @override
     def variants(self, signals: Signals, location: str) -> np.ndarray:
