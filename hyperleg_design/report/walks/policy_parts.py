@@ -179,5 +179,8 @@ def _learning(evaluated: Evaluated, draw: Drawer) -> Part:
     curves = [p for p in evaluated.policies if p.late == 0 and learning_curve(p.path.parent)]
     if not curves:
         return Part("Learning curves", ["No training brought its learning curve along."])
-    caption = "Means over the robots in training, with exploration, and with assist as long as there is some."
+    caption = (
+        "Means over the robots in training, with exploration, and with assist as long as there is some. "
+        "A training that starts from another policy begins with what that one can."
+    )
     return Part("Learning curves", [draw("learning", caption, later(learning_figure, curves))])
