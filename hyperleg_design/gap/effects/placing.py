@@ -273,8 +273,9 @@ def limited(
     """
     subject = signals.subject
     stall, free = line or (subject.stall_torque[motor], subject.no_load_speed[motor])
-    return limits.limited(
+    return limits.limited_twice(
         torque,
+        None if signals.jump is None else signals.jump[:, motor],
         signals.motor_speed[:, motor],
         np.minimum(subject.torque_limit[motor], peak),
         stall,

@@ -20,7 +20,7 @@ from hyperleg_design.gap.inference import noise_model, nuisance, nuisance_traces
 from hyperleg_design.gap.inference.channels.channel import Channel
 from hyperleg_design.gap.inference.channels.discrepancy import MOTORS, load, shapes
 from hyperleg_design.gap.inference.endogenous import Factor
-from hyperleg_design.gap.inference.felt import SLOWEST_BANDS, answering
+from hyperleg_design.gap.inference.felt import SLOWEST_BANDS
 from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import Samples, gather
@@ -327,7 +327,6 @@ def _feigned(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarra
             )[:, 0]
             slow, fast, driven = filtered.sample(place, np.stack([torque, twice, given]))
             _, rate = noise_model.of_acceleration(filtered, place)
-            answer = answering(filtered, place)
             expected = one.samples.floor[places[place]] ** 2
             band = filtered.labels(place)[0]
             for b in np.unique(band).tolist():
@@ -341,7 +340,7 @@ def _feigned(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarra
                 if one.tested:
                     number = float(one.samples.share[at].sum())
                     whole = whole + number
-                    clean = clean + answer[b] * (1 - idle) * number
+                    clean = clean + (1 - idle) * number
                 columns[2 * b, at] = share * slow[mine]
                 columns[2 * b + 1, at] = share * fast[mine] / float(np.mean(rate[mine]))
     return found, clean / max(whole, 1e-300)

@@ -1,10 +1,10 @@
-"""What motors give on a robot whose model lacks something: the logs under test as causes that act
-in the references, too, leave them.
+"""Causes that act on what others leave: logs as these leave them.
 
 A cause that is new in the logs under test acts on the robot as it was before. If its drives lag, a
 further delay shifts what they gave, not what they were asked for; a motor that gave 0.85 of what is
-believed, and now gives 0.75 of that, has lost another 0.85 x 0.25. Traces add up, so that of a new
-cause is computed from torques that hold the standing ones already.
+believed, and now gives 0.75 of that, has lost another 0.85 x 0.25. And gears rub by all that they
+carry: with a load on the hand they rub more. Traces add up, so that of such a cause is computed
+from torques that hold the others already.
 """
 
 from __future__ import annotations
@@ -30,6 +30,26 @@ def after(samples: Samples, causes: Sequence[tuple[Cause, np.ndarray]]) -> Sampl
     """
     logs = tuple(_after(log, causes) for log in samples.filtered_logs)
     return replace(samples, filtered_logs=logs)
+
+
+def carrying(samples: Samples, causes: Sequence[tuple[Cause, np.ndarray]], tests: int) -> Samples:
+    """Samples whose logs need the torques that some masses ask for; their residuals stay what they
+    are.
+
+    Args:
+        samples: of logs, those under test first.
+        causes: masses, and their values `(k,)` each.
+        tests: number of logs under test; the others hold only what acts in all.
+    """
+    logs = []
+    for place, log in enumerate(samples.filtered_logs):
+        rigid = log.signals.rigid
+        for cause, values in causes:
+            if cause.standing or place < tests:
+                left = EFFECTS[cause.effect].trace(log.signals, cause.location, values[None])
+                rigid = rigid + np.nan_to_num(left["motion"][0]) if "motion" in left else rigid
+        logs.append(replace(log, signals=replace(log.signals, rigid=rigid)))
+    return replace(samples, filtered_logs=tuple(logs))
 
 
 def _after(log: FilteredLog, causes: Sequence[tuple[Cause, np.ndarray]]) -> FilteredLog:

@@ -50,7 +50,7 @@ class Cause:
     standing: bool = False
     """Whether it acts in all logs, reference logs included, not in those under test alone."""
     before: tuple[float, ...] = ()
-    """Values of the standing causes that act before it, where it is linearised beside any."""
+    """Values of the causes that it acts on, where it is linearised beside any."""
 
     @property
     def name(self) -> tuple[str, str]:

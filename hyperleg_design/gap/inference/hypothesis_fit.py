@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
-from hyperleg_design.gap.effects.families import IN_DRIVES
+from hyperleg_design.gap.effects.families import BY_LOAD, IN_DRIVES, INERTIAL
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause_prior import log_prior
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scale_fit import STEPS, fitted
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.composed import after
+from hyperleg_design.gap.inference.composed import after, carrying
 from hyperleg_design.gap.inference.endogenous import Factor, joined
 from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import (
@@ -31,6 +31,7 @@ from hyperleg_design.gap.inference.hypothesis import (
 )
 from hyperleg_design.gap.inference.promises import Promise
 from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.samples import Samples
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -38,7 +39,8 @@ if TYPE_CHECKING:
 CLOSE = 0.02
 """Step of a nonlinear fit, over usual sizes, from which it has converged [-]."""
 EASED = 2.0
-"""Noise under test over a healthy robot's, in variance, at most where a fit begins [-]."""
+"""Noise under test over a healthy robot's, in variance, and discrepancy, at most where causes are
+looked for [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,34 +156,42 @@ class HypothesisFit:
         return hypothesis
 
     def _again(self, hypothesis: Hypothesis) -> tuple[Candidate, ...] | None:
-        """Candidates linearised at their estimates; None where they are already."""
-        evidence, moved = self.evidence, False
+        """Candidates linearised at their estimates, on what others leave; None where they are
+        already.
+        """
+        moved = False
         values = [hypothesis.values(place) for place in range(len(hypothesis.causes))]
-        standing = [
-            (cause, own)
-            for cause, own in zip(hypothesis.causes, values, strict=True)
-            if cause.standing and cause.effect in IN_DRIVES
-        ]
-        before = tuple(float(x) for _, own in standing for x in own)
-        tests = after(evidence.tests, standing) if standing else evidence.tests
+        whole = list(zip(hypothesis.causes, values, strict=True))
+        drives = [one for one in whole if one[0].standing and one[0].effect in IN_DRIVES]
+        masses = [one for one in whole if one[0].effect in INERTIAL]
         candidates, place = [], 0
         for candidate in hypothesis.candidates:
             causes = []
             for cause in candidate.causes:
                 at, place = cause.values if cause.linear else values[place], place + 1
-                wanted = () if cause.standing or cause.effect not in IN_DRIVES else before
+                others = masses if cause.effect in BY_LOAD else []
+                if not cause.standing and cause.effect in IN_DRIVES:
+                    others = drives
+                wanted = tuple(float(x) for _, own in others for x in own)
                 if _near(at, cause.values, cause.usual) and _near(wanted, cause.before, 1.0):
                     causes.append(cause)
                     continue
-                samples = (
-                    evidence.samples if cause.standing else tests if wanted else evidence.tests
-                )
+                samples = self._beside(cause, others)
                 again = screen.linearise(samples, WEIGHED[cause.effect], cause.location, at)
                 if again is not None:
                     cause, moved = self._instead(cause, again, wanted), True
                 causes.append(cause)
             candidates.append(replace(candidate, causes=tuple(causes)))
         return tuple(candidates) if moved else None
+
+    def _beside(self, cause: Cause, others: Sequence[tuple[Cause, np.ndarray]]) -> Samples:
+        """Samples that show a cause, as others leave their logs."""
+        samples = self.evidence.samples if cause.standing else self.evidence.tests
+        if not others:
+            return samples
+        if cause.effect in BY_LOAD:
+            return carrying(samples, others, len(self.evidence.signals))
+        return after(samples, others)
 
     def _instead(self, cause: Cause, again: Cause, before: tuple[float, ...]) -> Cause:
         """A cause as it is linearised again; where it gains nothing by scaling torques, so does
@@ -220,7 +230,7 @@ class HypothesisFit:
 
     def fit(self, candidates: Sequence[Candidate], scales: Sequence[Scales]) -> Hypothesis:
         """Fit causes and the scales of the channels that they show in, in turn: from scales as they
-        are, and from ones whose noise does not hide what the causes explain.
+        are, and from ones that do not hide what the causes explain.
 
         Args:
             candidates: of the hypothesis.
@@ -311,10 +321,15 @@ def _near(values: ArrayLike, others: ArrayLike, usual: ArrayLike) -> bool:
 def eased(
     evidence: Evidence, scales: Sequence[Scales], rules: InferenceRules
 ) -> tuple[Scales, ...]:
-    """Scales whose noise under test is at most `EASED` times that of a healthy robot."""
+    """Scales whose noise and discrepancy under test are at most `EASED` times those of a healthy
+    robot: larger ones, which stand for a cause before it is found, would hide it.
+    """
+    prior = rules.discrepancy
+    change, alone = np.log(EASED * prior.change), np.log(EASED * prior.standing)
     found = []
     for channel, one in zip(evidence.channels, scales, strict=True):
         noise, place = one.noise.copy(), channel.bands_tested
         noise[place] = np.minimum(noise[place], EASED * channel.usual_noise(one.noise, rules))
-        found.append(replace(one, noise=noise))
+        standing = one.standing if channel.referenced else min(one.standing, alone)
+        found.append(Scales(noise, standing, min(one.change, change), 0.0))
     return tuple(found)

@@ -21,6 +21,11 @@ MAX_GRAVITY = 30.0
 """Above that of any planet a robot stands on [m/s^2]: another unit."""
 BASES = ("", "fixed", "floating")
 """What holds the robot's base; empty, what its model says."""
+TARGETS = ("", "kept", "moving")
+"""What position targets do from row to row: stay until the next one, as where a policy or a script
+sets them, or move evenly, as where a faster controller makes them; empty, `KEPT_FROM` decides."""
+KEPT_FROM = 0.008
+"""Time between rows from which targets are taken to be kept [s] (assumed)."""
 ROLES = ("test", "reference")
 """A reference log is of the same robot in a state known to be well modelled."""
 
@@ -49,6 +54,8 @@ class Metadata:
     """By motor without current control, whose duty cycle follows the gains: nominal supply [V], and
     stall torque [Nm] and no-load speed [rad/s] at it. Their stiffness and their limits follow the
     logged voltage of the battery."""
+    targets: str = ""
+    """One of `TARGETS`."""
     payload: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
     """What hangs on the robot by link: mass [kg], centre of mass in the link's frame x, y, z
     [m]."""
@@ -152,7 +159,7 @@ def metadata_from_mapping(content: Mapping[str, Any], where: str) -> Metadata:
 
 def _checked(content: Mapping[str, Any], where: str) -> dict[str, Any]:
     checks: dict[str, Callable[[Any, str, str], Any]] = {
-        **dict.fromkeys(("robot", "base", "session", "role", "notes"), _text),
+        **dict.fromkeys(("robot", "base", "targets", "session", "role", "notes"), _text),
         **dict.fromkeys(NUMBERS, _numbers_by_name),
         "overrides": _overrides,
         "gravity": _gravity,
@@ -161,7 +168,7 @@ def _checked(content: Mapping[str, Any], where: str) -> dict[str, Any]:
     values = {
         key: check(content[key], where, key) for key, check in checks.items() if key in content
     }
-    for key, allowed in (("base", BASES), ("role", ROLES)):
+    for key, allowed in (("base", BASES), ("targets", TARGETS), ("role", ROLES)):
         if key in values and values[key] not in allowed:
             remedy = f"expects {' or '.join(a for a in allowed if a)}"
             raise InputError(where, key, values[key], remedy)

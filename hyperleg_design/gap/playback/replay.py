@@ -24,7 +24,7 @@ from hyperleg_design.gap.playback.base_states import base_states
 from hyperleg_design.gap.playback.overlay import alterations
 from hyperleg_design.gap.playback.plant import Plant
 from hyperleg_design.gap.playback.windows import Windows, short_windows
-from hyperleg_design.gap.signals.channels import held
+from hyperleg_design.gap.signals.channels import held, resampled_or_none
 from hyperleg_design.gap.signals.conditioning import wrong_limits
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
@@ -137,7 +137,13 @@ def _inputs(signals: Signals, follow: str) -> np.ndarray:
     """
     if follow not in INPUTS:
         raise InputError("replay", "follow", follow, f"expects one of {', '.join(INPUTS)}")
-    known = {"target": signals.target, "command": signals.command, "torque": signals.believed}
+    log = signals.log
+    target = log.stack("position_target", signals.subject.joints)
+    known = {
+        "target": resampled_or_none(log.time, target, signals.time),
+        "command": signals.command,
+        "torque": signals.believed,
+    }
     found = known[follow]
     if found is None:
         raise InputError(

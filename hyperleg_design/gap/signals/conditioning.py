@@ -14,6 +14,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.frozen import frozen
 from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import KEPT_FROM
 from hyperleg_design.gap.model import friction, pads, rigid
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.model.supply import driven_by_duty, over_nominal
@@ -96,8 +97,8 @@ def condition(log: Log, subject: Subject) -> Signals:
     voltage = _voltage(log, ticks)
     # the damping of a motor without current control is its own, by the speed that it really has
     seen = np.where(driven_by_duty(subject), np.nan, velocity)
-    command, target, control, others = _command(log, subject, ticks, motion, seen)
     measured = _measured(log, subject, ticks)
+    command, jump, target, control, others = _command(log, subject, ticks, motion, seen, measured)
     residual: dict[str, np.ndarray] = {}
     speed = motion.first @ subject.joint_from_motor
     if (
@@ -110,7 +111,7 @@ def condition(log: Log, subject: Subject) -> Signals:
             )
             notes += refused
             speed = np.where(np.isfinite(residual["transmission"]), spin, speed)
-    limited = None if command is None else limited_torque(subject, command, speed, voltage)
+    limited = None if command is None else limited_torque(subject, command, speed, voltage, jump)
     believed, more = _believed(log, subject, measured, limited)
     notes += more
     moved = motion.value, motion.first, motion.second
@@ -185,6 +186,7 @@ def condition(log: Log, subject: Subject) -> Signals:
         touching=ground.touching,
         bandwidth=motion.crossover / (2 * np.pi),
         noise=motion.level,
+        jump=jump,
         limit_cycle=shaken,
         notes=tuple(notes),
     )
@@ -223,7 +225,11 @@ def at_stop(subject: Subject, position: np.ndarray) -> np.ndarray:
 
 
 def limited_torque(
-    subject: Subject, torque: np.ndarray, speed: np.ndarray, voltage: np.ndarray | None = None
+    subject: Subject,
+    torque: np.ndarray,
+    speed: np.ndarray,
+    voltage: np.ndarray | None = None,
+    jump: np.ndarray | None = None,
 ) -> np.ndarray:
     """Bring motor torques within the peak torque and DC-motor line of the nominal motors.
 
@@ -232,46 +238,79 @@ def limited_torque(
         torque: of the motors `(t, m)` [Nm].
         speed: of the motors `(t, m)` [rad/s].
         voltage: of the battery `(t,)` [V], which motors without current control follow.
+        jump: that the torque is more than this in one half of a tick and less in the other
+            `(t, m)` [Nm].
 
     Returns:
         The torques [Nm], `(t, m)`.
     """
     peak, stall, free = subject.torque_limit, subject.stall_torque, subject.no_load_speed
-    return limits.limited(torque, speed, peak, stall, free, over_nominal(subject, voltage))
+    line = peak, stall, free, over_nominal(subject, voltage)
+    return limits.limited_twice(torque, jump, speed, *line)
 
 
 def _command(
-    log: Log, subject: Subject, ticks: np.ndarray, motion: Smooth, speed: np.ndarray
-) -> tuple[np.ndarray | None, np.ndarray | None, np.ndarray | None, tuple[str, ...]]:
-    """Motor torque that the controller asks for, position targets, the residual of the control, and
-    motors that it cannot speak of.
+    log: Log,
+    subject: Subject,
+    ticks: np.ndarray,
+    motion: Smooth,
+    speed: np.ndarray,
+    measured: np.ndarray | None,
+) -> tuple[
+    np.ndarray | None,
+    np.ndarray | None,
+    np.ndarray | None,
+    np.ndarray | None,
+    tuple[str, ...],
+]:
+    """Motor torque that the controller asks for and its jumps, position targets, the residual of
+    the control, and motors that it cannot speak of.
+
+    Around a row at which a target is new, the old one that was kept until then acts as long. Where
+    torques are measured, both they and the targets are of the moment of the row.
     """
     raw_target = log.stack("position_target", subject.joints)
     logged = of_motors(log, "motor_torque_command", subject)
     command = resampled(log.time, logged, ticks)
-    target = resampled_or_none(log.time, raw_target, ticks)
+    kept = np.full_like(raw_target, np.nan)
+    if _kept(log):
+        kept[1:] = raw_target[:-1]
+    if measured is not None:
+        told = np.isfinite(measured).any(0)
+        kept[:, np.abs(subject.motor_from_joint[told]).sum(0) > 0] = np.nan
+    kept = np.where(np.isfinite(kept), kept, raw_target)
+    target = resampled_or_none(log.time, (raw_target + kept) / 2, ticks)
     control: np.ndarray | None = None
+    jump: np.ndarray | None = None
     others: tuple[str, ...] = ()
     if target is not None:
         derived = np.stack([np.interp(log.time, ticks, v) for v in motion.first.T], -1)
         speed = np.where(np.isfinite(speed), speed, derived)
         stiffness, damping = subject.gains.T
         spring = stiffness * (raw_target - log.stack("position", subject.joints))
+        half = stiffness * (raw_target - kept) / 2
         damper = -damping * speed
-        spring[:, subject.passive] = damper[:, subject.passive] = 0.0
+        spring[:, subject.passive] = half[:, subject.passive] = damper[:, subject.passive] = 0.0
         if np.isfinite(logged).any():
             residual, others = control_residual(subject, logged, spring, damper)
             control = resampled_or_none(log.time, residual, ticks)
         supplied = over_nominal(subject, log.column("battery_voltage"))
-        asked = supplied * applied(subject.motor_from_joint, spring) + applied(
+        asked = supplied * applied(subject.motor_from_joint, spring - half) + applied(
             subject.motor_from_joint, damper
         )
         torque = resampled(log.time, asked, ticks)
+        more = resampled(log.time, supplied * applied(subject.motor_from_joint, half), ticks)
+        jump = np.where(np.isfinite(command), 0.0, np.nan_to_num(more))
         command = np.where(np.isfinite(command), command, torque)
     if subject.one_to_one and subject.passive.any():
         command[:, subject.passive] = 0.0
     known = np.isfinite(command[:, _driven(subject)]).any()
-    return command if known else None, target, control, others
+    return command if known else None, jump, target, control, others
+
+
+def _kept(log: Log) -> bool:
+    """Whether targets are kept from row to row."""
+    return (log.metadata.targets or ("kept" if log.step >= KEPT_FROM else "moving")) == "kept"
 
 
 def _driven(subject: Subject) -> np.ndarray:

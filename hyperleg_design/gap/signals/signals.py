@@ -83,7 +83,8 @@ class Signals:
     """Speed that the DC-motor lines of motors follow `(t, m)` [rad/s]: the logged one, else that of
     their joints' motion, which is smoother than what an impact does to a motor."""
     target: np.ndarray | None
-    """Position target `(t, n)` [rad]."""
+    """Position target as it acts over a tick, `(t, n)` [rad]: halfway between the one that was kept
+    until then and the one that is new."""
     command: np.ndarray | None
     """Motor torque that the controller asks for `(t, m)` [Nm]: logged, or from targets and gains;
     before any limit."""
@@ -117,6 +118,9 @@ class Signals:
     noise: np.ndarray | None = None
     """Standard deviation of the noise of a position sample, as the log itself tells `(n,)`
     [rad]."""
+    jump: np.ndarray | None = None
+    """Half of the change of the commands where new targets come with a row of the log `(t, m)`
+    [Nm]."""
     limit_cycle: LimitCycle | None = None
     """Of joints that swing to and fro above all that was commanded; None where none does."""
     notes: tuple[str, ...] = ()

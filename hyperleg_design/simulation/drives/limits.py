@@ -35,6 +35,35 @@ def limited(
     return np.asarray(np.maximum(np.minimum(torque, peak), -peak))
 
 
+def limited_twice(
+    torque: np.ndarray,
+    jump: np.ndarray | None,
+    speed: np.ndarray,
+    peak: np.ndarray | float,
+    stall: np.ndarray | float,
+    free: np.ndarray | float,
+    voltage: np.ndarray | float = 1.0,
+) -> np.ndarray:
+    """Mean of torques within limits that are less in one half of a time and more in the other.
+
+    Args:
+        torque: as wanted, on average [Nm], `(..., K)`.
+        jump: half of the difference [Nm]; None without.
+        speed: as of `limited`, like all others.
+        peak: [Nm]
+        stall: [Nm]
+        free: [rad/s]
+        voltage: [-]
+
+    Returns:
+        The torques [Nm].
+    """
+    line = speed, peak, stall, free, voltage
+    if jump is None or not jump.any():
+        return limited(torque, *line)
+    return (limited(torque - jump, *line) + limited(torque + jump, *line)) / 2
+
+
 @dataclass(slots=True, eq=False)
 class Limits:
     """What motors can give at this moment, `(n, K)` or `(K,)`; as in `Machine`."""

@@ -32,12 +32,14 @@ def test_limits_are_those_of_conditioning():
     velocity, torque = rng.normal(0, 8, (500, 14)), rng.normal(0, 4, (500, 14))
     speed = velocity @ subject.joint_from_motor
     signals = SimpleNamespace(subject=subject, motor_speed=speed, supplied=np.ones((1, 14)))
-    whole = limited_torque(subject, torque.copy(), speed)
-    assert not np.allclose(whole, torque)
-    for motor in range(14):
-        np.testing.assert_allclose(
-            placing.limited(signals, motor, torque[:, motor]), whole[:, motor], rtol=1e-10
-        )
+    for jump in (None, rng.normal(0, 2, (500, 14))):
+        signals.jump = jump
+        whole = limited_torque(subject, torque.copy(), speed, jump=jump)
+        assert not np.allclose(whole, torque)
+        for motor in range(14):
+            np.testing.assert_allclose(
+                placing.limited(signals, motor, torque[:, motor]), whole[:, motor], rtol=1e-10
+            )
 
 
 def test_strength_is_the_torque_of_the_motors_or_what_gravity_needs(pendulum):

@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.composed import after
+from hyperleg_design.gap.inference.composed import after, carrying
 from hyperleg_design.gap.inference.screen import linearise
+from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.signals.conditioning import condition
 
 MOTOR = "m_back"
 
@@ -48,3 +50,26 @@ def test_what_was_measured_stays(tests):
     late = after(tests, standing(tests, "actuator_bandwidth", 0.03))
     np.testing.assert_array_equal(late.value, tests.value)
     assert late.filtered_logs[0].signals.residual is tests.filtered_logs[0].signals.residual
+
+
+@pytest.mark.parametrize("standing", [False, True])
+def test_gears_rub_by_all_that_they_carry(robot_files, standing):
+    """A load beside friction under load, against a model that carries the load already."""
+    found = diagnosed.evidence(
+        robot_files["coupled"],
+        diagnosed.run("healthy", 0),
+        references=(diagnosed.run("healthy", 1, role="reference"),),
+    )
+    values = np.array([0.5, 0.0, 0.0, -0.2, 0.0])
+    cause = linearise(found.tests, EFFECTS["payload"], "shank", values)
+    cause = found.acting(cause, standing)
+    carried = carrying(found.samples, [(cause, values)], 1)
+    np.testing.assert_array_equal(carried.value, found.samples.value)
+    load = Metadata(payload={"shank": (0.5, 0.0, 0.0, -0.2)})
+    for place, log in enumerate(carried.filtered_logs):
+        signals = log.signals
+        loaded = condition(signals.log.changed(metadata=load), signals.subject)
+        plain = found.samples.filtered_logs[place].signals
+        here = standing or place == 0
+        assert not np.allclose(loaded.rigid, plain.rigid, atol=0.1)
+        np.testing.assert_allclose(signals.rigid, (loaded if here else plain).rigid, atol=1e-6)

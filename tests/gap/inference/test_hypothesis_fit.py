@@ -1,5 +1,7 @@
 """Fits of causes that are linearised, against what they are linearised of."""
 
+from dataclasses import replace
+
 import diagnosed
 import numpy as np
 import pytest
@@ -7,7 +9,7 @@ import pytest
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.hypothesis import Candidate
-from hyperleg_design.gap.inference.hypothesis_fit import CLOSE, HypothesisFit
+from hyperleg_design.gap.inference.hypothesis_fit import CLOSE, EASED, HypothesisFit, eased
 from hyperleg_design.gap.inference.rules import InferenceRules
 
 PLACE = "shank"
@@ -27,7 +29,8 @@ def fits(robot_files):
     trace[: len(load)] = -load * found.weight[: len(load)]
     channels = tuple(one.without(trace) for one in found.channels)
     evidence = type(found)(**{**vars(found), "channels": channels})
-    return HypothesisFit(evidence, InferenceRules(), {}, {"payload": 2, "torque_constant": 2})
+    count = {"payload": 2, "load_dependent_friction": 2}
+    return HypothesisFit(evidence, InferenceRules(), {}, count)
 
 
 def fitted(fits, values):
@@ -49,3 +52,34 @@ def test_a_load_is_the_same_wherever_it_was_linearised(fits):
 def test_what_is_linearised_where_it_is_stays_as_it_is(fits):
     settled = fits.settled(fitted(fits, LOAD))
     assert fits.settled(settled) is settled
+
+
+def test_friction_under_load_is_linearised_with_the_load_that_is_fitted_beside_it(fits):
+    rubbing = screen.linearise(
+        fits.evidence.samples, EFFECTS["load_dependent_friction"], "knee", np.array([0.1])
+    )
+    candidates = (
+        *fitted(fits, LOAD).candidates,
+        Candidate("load_dependent_friction", "knee", (fits.evidence.acting(rubbing, True),)),
+    )
+    settled = fits.settled(fits.fit(candidates, fits.nothing.scales))
+    load, rubs = settled.causes
+    np.testing.assert_allclose(rubs.before, settled.values(0), atol=0.02)
+    assert not load.before
+    assert not np.allclose(rubs.columns, rubbing.columns[:, : rubs.columns.shape[1]])
+
+
+def test_causes_are_looked_for_where_nothing_stands_in_for_them(fits):
+    """Whatever noise and discrepancy have grown to in logs under test."""
+    grown = tuple(
+        replace(one, noise=100 * one.noise, change=2.0, new=1.0) for one in fits.nothing.scales
+    )
+    for one, large, channel in zip(
+        eased(fits.evidence, grown, fits.rules), grown, fits.evidence.channels, strict=True
+    ):
+        assert one.new == 0
+        assert np.exp(one.change) == pytest.approx(EASED * fits.rules.discrepancy.change)
+        assert one.standing == large.standing  # of references
+        usual = channel.usual_noise(large.noise, fits.rules)
+        assert (one.noise[channel.bands_tested] <= EASED * usual).all()
+    assert eased(fits.evidence, fits.nothing.scales, fits.rules)[0].new == 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.simulation.drives.limits import Limits, limited
+from hyperleg_design.simulation.drives.limits import Limits, limited, limited_twice
 from hyperleg_design.sizing.envelope import clip_torque, motor_envelope
 
 
@@ -39,3 +39,13 @@ def test_the_line_of_a_weak_battery_has_less_torque_at_all_speeds():
     speed = np.array([0.0, 2.0, 4.0, -2.0])
     given = limited(np.full(4, 100.0), speed, 9.0, 10.0, 5.0, voltage=0.8)
     assert given == pytest.approx([8.0, 4.0, 0.0, 9.0])
+
+
+def test_torques_that_jump_within_a_time_are_limited_before_they_are_averaged():
+    rng = np.random.default_rng(3)
+    torque, jump, speed = rng.uniform(-12, 12, (3, 500))
+    line = speed, 9.0, 10.0, 5.0, 0.9
+    halves = limited(np.stack([torque - jump, torque + jump]), *line)
+    np.testing.assert_allclose(limited_twice(torque, jump, *line), halves.mean(0), atol=1e-12)
+    np.testing.assert_array_equal(limited_twice(torque, None, *line), limited(torque, *line))
+    assert not np.allclose(limited_twice(torque, jump, *line), limited(torque, *line), atol=1)

@@ -13,15 +13,20 @@ from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.kinds import MotorTorque
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.effects.placing import joint_inertia
+from hyperleg_design.gap.effects.placing import joint_inertia, motor_strength
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
 from hyperleg_design.simulation.drives.machine import Machine
 
 SHARE = 0.3
-"""Usual error over the rotor's inertia, or, where the model has none, over that of its joint
+"""Usual error over the rotor's inertia, or, where the model has none, over what is usual
 (assumed)."""
+LIVELY = 300.0
+"""Acceleration that a drive's torque gives its own rotor, where the model has none [rad/s^2];
+assumed: 30 to 300 of hobby servos and industrial arms, thousands of legs."""
+OF_ITS_JOINT = 0.03
+"""Inertia of a rotor over that of its joint, likewise and at least (assumed)."""
 CONTENT = 1.0
 """Content of the motion from which a rotor's inertia shows [Hz]."""
 OF_ROTOR, OF_JOINT = 0.06, 0.01
@@ -79,14 +84,17 @@ class RotorInertia(MotorTorque):
 
     @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the rotor's own inertia, or of its joints' as the motor feels it."""
+        """A share of the rotor's own inertia. Where the model has none, of what the motor's torque
+        accelerates: next to the rotors of a small arm, the links of its wrist are nothing.
+        """
         motor = subject.motors.index(location)
         own = float(subject.rotor_inertia[motor])
         column = subject.joint_from_motor[:, motor]
         main = int(np.argmax(np.abs(column)))
-        return np.array(
-            [SHARE * max(own, 0.03 * float(joint_inertia(subject)[main]) / column[main] ** 2)]
-        )
+        least = OF_ITS_JOINT * float(joint_inertia(subject)[main]) / column[main] ** 2
+        if own <= 0:
+            own = motor_strength(subject, motor) / LIVELY
+        return np.array([SHARE * max(own, least)])
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:

@@ -24,6 +24,7 @@ def test_limits_follow_the_voltage_of_a_design_whose_line_is_known():
     asked[:, 0] = 5.0
     signals = SimpleNamespace(
         supplied=np.ones((1, 14)),
+        jump=None,
         subject=subject,
         velocity=velocity,
         motor_speed=velocity @ subject.joint_from_motor,
