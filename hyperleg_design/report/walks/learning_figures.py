@@ -19,7 +19,8 @@ SHOWN = (
     ("cost_of_transport", "CoT"),
     ("assist", "assist"),
 )
-"""Measures that are drawn as learning curves, with the labels of their axes."""
+"""Measures that are drawn as learning curves, with the labels of their axes; the assist where there
+is any."""
 _GREY = "#6b7280"
 _HIGHEST = {"cost_of_transport": 1.5}
 """Where an axis ends, because what stands or falls has no cost of transport."""
@@ -38,26 +39,29 @@ def learning_figure(policies: Sequence[Shipped]) -> Figure:
     import matplotlib.pyplot as plt
 
     trainings = {p.training: p for p in policies}
+    curves = {name: learning_curve(p.path.parent) for name, p in trainings.items()}
+    helped = any(row.get("assist") for curve in curves.values() for row in curve)
+    shown = [one for one in SHOWN if helped or one[0] != "assist"]
     groups = list(dict.fromkeys(p.group for p in trainings.values()))
     designs = list(dict.fromkeys(p.design for p in trainings.values()))
     with figure_style():
         figure, grid = plt.subplots(
             len(groups),
-            len(SHOWN),
-            figsize=(3.1 * len(SHOWN), 2.3 * len(groups)),
+            len(shown),
+            figsize=(3.1 * len(shown), 2.3 * len(groups)),
             squeeze=False,
             layout="constrained",
         )
         for row, group in zip(grid, groups, strict=True):
             for policy in (p for p in trainings.values() if p.group == group):
-                curve = learning_curve(policy.path.parent)
-                for axes, (key, _) in zip(row, SHOWN, strict=True):
+                curve = curves[policy.training]
+                for axes, (key, _) in zip(row, shown, strict=True):
                     x = np.array([r["steps"] for r in curve if key in r and "steps" in r]) / 1e6
                     y = np.array([r[key] for r in curve if key in r and "steps" in r])
                     axes.plot(
                         x, y, lw=1.1, alpha=0.85, color=VARIANT_COLOUR.get(policy.design, _GREY)
                     )
-            for axes, (key, title) in zip(row, SHOWN, strict=True):
+            for axes, (key, title) in zip(row, shown, strict=True):
                 axes.set_title(title)
                 axes.set_ylim(0, _HIGHEST.get(key))
                 axes.set_xlim(left=0)

@@ -180,7 +180,7 @@ def _learning(evaluated: Evaluated, draw: Drawer) -> Part:
     if not curves:
         return Part("Learning curves", ["No training brought its learning curve along."])
     caption = (
-        "Means over the robots in training, with exploration, and with assist as long as there is some. "
+        "Means over the robots in training, with exploration, and with the assist where one is drawn. "
         "A training that starts from another policy begins with what that one can."
     )
     return Part("Learning curves", [draw("learning", caption, later(learning_figure, curves))])
