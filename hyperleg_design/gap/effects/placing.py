@@ -273,14 +273,14 @@ def limited(
     """
     subject = signals.subject
     stall, free = line or (subject.stall_torque[motor], subject.no_load_speed[motor])
-    return limits.limited_twice(
+    return limits.limited(
         torque,
-        None if signals.jump is None else signals.jump[:, motor],
         signals.motor_speed[:, motor],
         np.minimum(subject.torque_limit[motor], peak),
         stall,
         free,
         np.maximum(voltage, 0.0) * signals.supplied[:, motor],
+        None if signals.jump is None else signals.jump[:, motor],
     )
 
 

@@ -245,8 +245,7 @@ def limited_torque(
         The torques [Nm], `(t, m)`.
     """
     peak, stall, free = subject.torque_limit, subject.stall_torque, subject.no_load_speed
-    line = peak, stall, free, over_nominal(subject, voltage)
-    return limits.limited_twice(torque, jump, speed, *line)
+    return limits.limited(torque, speed, peak, stall, free, over_nominal(subject, voltage), jump)
 
 
 def _command(

@@ -14,6 +14,7 @@ def limited(
     stall: np.ndarray | float,
     free: np.ndarray | float,
     voltage: np.ndarray | float = 1.0,
+    jump: np.ndarray | None = None,
 ) -> np.ndarray:
     """Bring torques of motors within their peak torque and DC-motor line; all broadcast.
 
@@ -24,44 +25,19 @@ def limited(
         stall: torque of the line [Nm], at the nominal voltage; infinite where unknown.
         free: no-load speed of the line [rad/s], likewise.
         voltage: over the nominal one, which the line follows [-].
+        jump: that the torque is less by this in one half of a time and more in the other [Nm].
 
     Returns:
-        The torques [Nm].
+        The torques, on average over that time [Nm].
     """
+    if jump is not None and jump.any():
+        line = speed, peak, stall, free, voltage
+        return (limited(torque - jump, *line) + limited(torque + jump, *line)) / 2
     with np.errstate(invalid="ignore"):
         droop = np.where(np.isfinite(stall), stall / free, 0.0) * speed
     available = stall * voltage
     torque = np.maximum(np.minimum(torque, available - droop), -available - droop)
     return np.asarray(np.maximum(np.minimum(torque, peak), -peak))
-
-
-def limited_twice(
-    torque: np.ndarray,
-    jump: np.ndarray | None,
-    speed: np.ndarray,
-    peak: np.ndarray | float,
-    stall: np.ndarray | float,
-    free: np.ndarray | float,
-    voltage: np.ndarray | float = 1.0,
-) -> np.ndarray:
-    """Mean of torques within limits that are less in one half of a time and more in the other.
-
-    Args:
-        torque: as wanted, on average [Nm], `(..., K)`.
-        jump: half of the difference [Nm]; None without.
-        speed: as of `limited`, like all others.
-        peak: [Nm]
-        stall: [Nm]
-        free: [rad/s]
-        voltage: [-]
-
-    Returns:
-        The torques [Nm].
-    """
-    line = speed, peak, stall, free, voltage
-    if jump is None or not jump.any():
-        return limited(torque, *line)
-    return (limited(torque - jump, *line) + limited(torque + jump, *line)) / 2
 
 
 @dataclass(slots=True, eq=False)

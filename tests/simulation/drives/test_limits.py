@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hyperleg_design.simulation.drives.limits import Limits, limited, limited_twice
+from hyperleg_design.simulation.drives.limits import Limits, limited
 from hyperleg_design.sizing.envelope import clip_torque, motor_envelope
 
 
@@ -46,6 +46,7 @@ def test_torques_that_jump_within_a_time_are_limited_before_they_are_averaged():
     torque, jump, speed = rng.uniform(-12, 12, (3, 500))
     line = speed, 9.0, 10.0, 5.0, 0.9
     halves = limited(np.stack([torque - jump, torque + jump]), *line)
-    np.testing.assert_allclose(limited_twice(torque, jump, *line), halves.mean(0), atol=1e-12)
-    np.testing.assert_array_equal(limited_twice(torque, None, *line), limited(torque, *line))
-    assert not np.allclose(limited_twice(torque, jump, *line), limited(torque, *line), atol=1)
+    found = limited(torque, *line, jump)
+    np.testing.assert_allclose(found, halves.mean(0), atol=1e-12)
+    np.testing.assert_array_equal(limited(torque, *line, 0 * jump), limited(torque, *line))
+    assert not np.allclose(found, limited(torque, *line), atol=1)
