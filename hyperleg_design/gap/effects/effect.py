@@ -82,8 +82,9 @@ class Effect(ABC):
     scales_measured: ClassVar[bool] = True
     """Whether it scales torque that is measured, too, not only what a controller asks for."""
     told_apart: ClassVar[Mapping[str, Set[str]]] = {}
-    """By name of an experiment of `gap/experiments/experiment.py`, effects that it tells apart from
-    this one; that one of two effects says so is enough."""
+    """By name of an experiment, effects that it tells apart; that one of two says so is enough."""
+    by_load: ClassVar[bool] = False
+    """Whether it grows with the load that a joint carries, whatever makes that load."""
     inertial: ClassVar[bool] = False
     """Whether it is of masses or rotors. Its usual errors are the same in all sessions, as these do
     not change overnight, and its trace counts as far as drives feel accelerations."""
@@ -93,8 +94,7 @@ class Effect(ABC):
     nuisance_torque: ClassVar[str] = LOGGED
     """One of `NUISANCE_TORQUES`: by which torques its nuisance parameters leave their traces."""
     look_alikes: ClassVar[Mapping[str, str]] = {}
-    """Effects that are taken for this one most, and what separates them; that one of two says so is
-    enough."""
+    """Effects that are taken for this one most, and what separates them; one of two may say so."""
 
     @abstractmethod
     def locations(self, subject: Subject) -> tuple[str, ...]:

@@ -20,8 +20,6 @@ WITH_LOAD = INERTIAL | {"encoder_offset", "joint_spring", "load_dependent_fricti
 """What changes with a known load otherwise than a scale of the torque does."""
 IN_DRIVES = LATE | SCALING - {"transmission_ratio"} | {"torque_saturation"}
 """What changes the torque that a motor gives, before anything that acts at its joints."""
-BY_LOAD = frozenset({"load_dependent_friction"})
-"""What grows with the load that joints carry, whatever makes it."""
 AT_JOINTS = {"rotor_inertia", "joint_spring", "encoder_offset", "cogging"}
 """What is neither friction nor a mass."""
 BEYOND_COMMANDS = (

@@ -55,6 +55,9 @@ class Evidence:
         """What scaling torques costs, as far as they are no noise in the channels that are made of
         them; once, as these channels are made of the same torques, where most of them are.
 
+        Where they are scaled in all logs, friction and rotors may be, too, and all that is left to
+        gain by larger ones is noise nearer to the expected one: that counts for nothing.
+
         Args:
             factor: of a cause.
             trace: that its parameter leaves, in all samples or in those under test `(S,)`.
@@ -69,7 +72,7 @@ class Evidence:
             if row == factor.row or (others and np.any(trace[place] != 0)):
                 numbers = share * float(self.samples.share[place].sum())
                 number, at = max((number, at), (numbers, row), key=lambda one: one[0])
-        return replace(factor, number=number, row=at)
+        return replace(factor, number=number, row=at, shows=0.0 if standing else factor.shows)
 
     def scaled(self, cause: Cause) -> Cause:
         """A cause that pays for scaling torques."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
-from hyperleg_design.gap.effects.families import BY_LOAD, IN_DRIVES, INERTIAL
+from hyperleg_design.gap.effects.families import IN_DRIVES, INERTIAL
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause_prior import log_prior
@@ -161,15 +161,15 @@ class HypothesisFit:
         """
         moved = False
         values = [hypothesis.values(place) for place in range(len(hypothesis.causes))]
-        whole = list(zip(hypothesis.causes, values, strict=True))
-        drives = [one for one in whole if one[0].standing and one[0].effect in IN_DRIVES]
-        masses = [one for one in whole if one[0].effect in INERTIAL]
+        sized = list(zip(hypothesis.causes, values, strict=True))
+        drives = [pair for pair in sized if pair[0].standing and pair[0].effect in IN_DRIVES]
+        masses = [pair for pair in sized if pair[0].effect in INERTIAL]
         candidates, place = [], 0
         for candidate in hypothesis.candidates:
             causes = []
             for cause in candidate.causes:
                 at, place = cause.values if cause.linear else values[place], place + 1
-                others = masses if cause.effect in BY_LOAD else []
+                others = masses if WEIGHED[cause.effect].by_load else []
                 if not cause.standing and cause.effect in IN_DRIVES:
                     others = drives
                 wanted = tuple(float(x) for _, own in others for x in own)
@@ -189,7 +189,7 @@ class HypothesisFit:
         samples = self.evidence.samples if cause.standing else self.evidence.tests
         if not others:
             return samples
-        if cause.effect in BY_LOAD:
+        if WEIGHED[cause.effect].by_load:
             return carrying(samples, others, len(self.evidence.signals))
         return after(samples, others)
 

@@ -271,14 +271,14 @@ def _command(
     raw_target = log.stack("position_target", subject.joints)
     logged = of_motors(log, "motor_torque_command", subject)
     command = resampled(log.time, logged, ticks)
-    kept = np.full_like(raw_target, np.nan)
+    old = np.full_like(raw_target, np.nan)
     if _kept(log):
-        kept[1:] = raw_target[:-1]
+        old[1:] = raw_target[:-1]
     if measured is not None:
-        told = np.isfinite(measured).any(0)
-        kept[:, np.abs(subject.motor_from_joint[told]).sum(0) > 0] = np.nan
-    kept = np.where(np.isfinite(kept), kept, raw_target)
-    target = resampled_or_none(log.time, (raw_target + kept) / 2, ticks)
+        driven = np.isfinite(measured).any(0)
+        old[:, np.abs(subject.motor_from_joint[driven]).sum(0) > 0] = np.nan
+    old = np.where(np.isfinite(old), old, raw_target)
+    target = resampled_or_none(log.time, (raw_target + old) / 2, ticks)
     control: np.ndarray | None = None
     jump: np.ndarray | None = None
     others: tuple[str, ...] = ()
@@ -287,7 +287,7 @@ def _command(
         speed = np.where(np.isfinite(speed), speed, derived)
         stiffness, damping = subject.gains.T
         spring = stiffness * (raw_target - log.stack("position", subject.joints))
-        half = stiffness * (raw_target - kept) / 2
+        half = stiffness * (raw_target - old) / 2
         damper = -damping * speed
         spring[:, subject.passive] = half[:, subject.passive] = damper[:, subject.passive] = 0.0
         if np.isfinite(logged).any():

@@ -32,6 +32,7 @@ class LoadDependentFriction(JointTorque):
     """
 
     identifier: ClassVar[str] = "load_dependent_friction"
+    by_load: ClassVar[bool] = True
     nuisance_rank: ClassVar[int] = 3
     summary: ClassVar[str] = "a joint resists motion with a share of the torque that it transmits"
     parameters: ClassVar[tuple[Parameter, ...]] = (
