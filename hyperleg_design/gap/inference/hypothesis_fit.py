@@ -160,6 +160,7 @@ class HypothesisFit:
         already.
         """
         moved = False
+        beside: dict[tuple[bool, bool, bool], Samples] = {}
         values = [hypothesis.values(place) for place in range(len(hypothesis.causes))]
         sized = list(zip(hypothesis.causes, values, strict=True))
         drives = [pair for pair in sized if pair[0].standing and pair[0].effect in IN_DRIVES]
@@ -176,8 +177,11 @@ class HypothesisFit:
                 if _near(at, cause.values, cause.usual) and _near(wanted, cause.before, 1.0):
                     causes.append(cause)
                     continue
-                samples = self._beside(cause, others)
-                again = screen.linearise(samples, WEIGHED[cause.effect], cause.location, at)
+                effect = WEIGHED[cause.effect]
+                alike = cause.standing, effect.by_load, bool(others)
+                if alike not in beside:
+                    beside[alike] = self._beside(cause, others)
+                again = screen.linearise(beside[alike], effect, cause.location, at)
                 if again is not None:
                     cause, moved = self._instead(cause, again, wanted), True
                 causes.append(cause)

@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,6 @@ import pytest
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.learning.preset import Preset
 
 torch = pytest.importorskip("torch")
@@ -20,7 +18,7 @@ pytest.importorskip("rsl_rl")
 pytest.importorskip("tensorboard")
 
 from hyperleg_design.learning.learner.algorithm import as_tensors  # noqa: E402
-from hyperleg_design.learning.policies.start_policy import SEEN, read_start  # noqa: E402
+from hyperleg_design.learning.policies.start_policy import read_start  # noqa: E402
 from hyperleg_design.learning.preset import WarmStart  # noqa: E402
 from hyperleg_design.learning.preset_file import load_preset  # noqa: E402
 from hyperleg_design.learning.train import describe, train  # noqa: E402
@@ -313,34 +311,6 @@ def test_a_training_of_many_designs_takes_over_the_critic_of_one(
         found = training.algorithm.critic(as_tensors({"critic": drawn})).numpy()
     np.testing.assert_allclose(found, expected, atol=2e-4 * (1 + np.abs(expected).max()))
     training.environment.close()
-
-
-def test_a_conditioned_policy_keeps_the_scale_of_its_inputs(tmp_path: Path) -> None:
-    """Its normaliser counts for all samples of its training, that of another policy for few."""
-    design = load_design("toe")
-    conditioned = read_start(CONDITIONED, design)
-    assert conditioned.seen == float(conditioned.source["steps"])
-    assert read_start(find_policy("walk_upright-toe-1"), design).seen == SEEN
-
-
-def test_a_policy_keeps_the_scale_of_its_inputs_in_its_own_task() -> None:
-    start = read_start(find_policy("walk_upright-toe-1"))
-    assert start.toward("t_test_guided").seen == SEEN
-    assert start.toward("walk_upright").seen == float(start.source["steps"]) > SEEN
-
-
-def test_a_policy_without_a_critic_takes_that_of_another_seed(tmp_path: Path) -> None:
-    for seed in "13":
-        shutil.copytree(find_policy("walk_upright-toe-0").parent, tmp_path / f"walk-toe-{seed}")
-    own, other = (tmp_path / f"walk-toe-{seed}/policy.onnx" for seed in "13")
-    assert read_start(own).own_critic
-    own.with_name("critic.onnx").unlink()
-    start = read_start(own)
-    assert start.critic is not None
-    assert not start.own_critic
-    assert start.source["critic_sha256"] == read_start(other).source["critic_sha256"]
-    other.with_name("critic.onnx").rename(tmp_path / "critic.onnx")
-    assert read_start(own).critic is None
 
 
 def test_a_conditioned_policy_starts_one_design_inside_its_ranges(tmp_path: Path) -> None:

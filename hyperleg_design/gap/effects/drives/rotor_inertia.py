@@ -22,7 +22,7 @@ from hyperleg_design.simulation.drives.machine import Machine
 SHARE = 0.3
 """Usual error over the rotor's inertia, or, where the model has none, over what is usual
 (assumed)."""
-LIVELY = 300.0
+ACCELERATION = 300.0
 """Acceleration that a drive's torque gives its own rotor, where the model has none [rad/s^2];
 assumed: 30 to 300 of hobby servos and industrial arms, thousands of legs."""
 OF_ITS_JOINT = 0.03
@@ -93,7 +93,7 @@ class RotorInertia(MotorTorque):
         main = int(np.argmax(np.abs(column)))
         least = OF_ITS_JOINT * float(joint_inertia(subject)[main]) / column[main] ** 2
         if own <= 0:
-            own = motor_strength(subject, motor) / LIVELY
+            own = motor_strength(subject, motor) / ACCELERATION
         return np.array([SHARE * max(own, least)])
 
     @override
