@@ -6,17 +6,23 @@ SHELL := /bin/bash
 
 .PHONY: study test test-all lint coverage docs wheel-test clean benchmark
 
-$(VENV)/.ready: pyproject.toml constraints.txt
+PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable
+
+$(VENV)/.installed: pyproject.toml constraints.txt  # the package and what its commands need, but for training
 	@command -v $(PYTHON) >/dev/null || { echo "Python 3.11 not found; set PYTHON=/path/to/python3.11"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,docs]'
+	$(PIP_INSTALL) '.[search,video,view]'
 	@touch $@
 
-$(VENV)/.learning: $(VENV)/.ready  # torch and what goes with it, for training; other tools' fits, for baselines; and the tests of both
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[baselines,dev,docs,learning]'
+$(VENV)/.ready: $(VENV)/.installed  # what checks and documents it
+	$(PIP_INSTALL) '.[dev,docs]'
 	@touch $@
 
-study: $(VENV)/.ready  ## Analyse the paper's biped and its ablations, sweep, and write results/study/index.html
+$(VENV)/.learning: $(VENV)/.installed  # torch and what goes with it, for training; other tools' fits, for baselines; and the tests of both
+	$(PIP_INSTALL) '.[baselines,dev,docs,learning]'
+	@touch $@
+
+study: $(VENV)/.installed  ## Analyse the paper's biped and its ablations, sweep, and write results/study/index.html
 	$(BIN)/hyperleg study --out results/study
 
 # two processes of tests are enough for two cores: linear algebra with threads of its own gets in their way

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -162,6 +163,7 @@ def evaluate_many(
     overrides: Sequence[Mapping[str, Any]] | None = None,
     designs: Sequence[RobotDesign | None] | None = None,
     alterations: Alterations | None = None,
+    pool: Executor | None = None,
     progress: Callable[[Evaluation], None] | None = None,
 ) -> list[Evaluation]:
     """Evaluate ONNX files, each in a process of one thread.
@@ -174,6 +176,8 @@ def evaluate_many(
         overrides: parameters of the robot to change, by path, for each policy; none by default.
         designs: the robot for each policy; its own by default.
         alterations: as in `evaluate`, of all policies; they must pickle.
+        pool: of `evaluation_pool`, to use the same processes for several calls; own ones by
+            default.
         progress: called with each evaluation as it comes, in order.
 
     Returns:
@@ -201,26 +205,36 @@ def evaluate_many(
         ),
     )
     evaluations = []
-    if workers == 1 or count < 2:
+    if workers == 1 or (count < 2 and pool is None):
         for job in jobs:
             evaluations.append(_evaluated(job))
             if progress is not None:
                 progress(evaluations[-1])
         return evaluations
-    import multiprocessing
-
-    with ProcessPoolExecutor(
-        min(workers, count), mp_context=multiprocessing.get_context("spawn")
-    ) as pool:
+    with nullcontext(pool) if pool else evaluation_pool(min(workers, count)) as processes:
         try:
-            for evaluation in pool.map(_evaluated, jobs):
+            for evaluation in processes.map(_evaluated, jobs):
                 evaluations.append(evaluation)
                 if progress is not None:
                     progress(evaluation)
         except BaseException:
-            pool.shutdown(cancel_futures=True)
+            processes.shutdown(cancel_futures=True)
             raise
     return evaluations
+
+
+def evaluation_pool(workers: int) -> ProcessPoolExecutor:
+    """Prepare processes for `evaluate_many`, which start when they are first needed.
+
+    Args:
+        workers: processes at most.
+
+    Returns:
+        The pool; a context that ends them.
+    """
+    import multiprocessing
+
+    return ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"))
 
 
 def _evaluated(

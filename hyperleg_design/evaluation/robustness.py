@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +19,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError, meant
 from hyperleg_design.evaluation import statistics
-from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
+from hyperleg_design.evaluation.evaluate import evaluate_many, evaluation_pool, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, WalkProtocol
 from hyperleg_design.evaluation.result import arrivals_only, by_checkpoint
@@ -206,6 +208,7 @@ def robustness(
     protocol: Protocol | None = None,
     levels: Mapping[str, Sequence[float]] | None = None,
     workers: int = 2,
+    pool: Executor | None = None,
     progress: Callable[[int, int, str], None] | None = None,
 ) -> pd.DataFrame:
     """Evaluate policies over the levels of conditions.
@@ -216,6 +219,7 @@ def robustness(
         protocol: what suits the first policy's task by default.
         levels: of some conditions, in place of their own.
         workers: processes side by side.
+        pool: of `evaluation_pool`; processes of its own by default.
         progress: called before each level and at the end with how many of how many levels are done,
             and the condition.
 
@@ -236,24 +240,26 @@ def robustness(
         for name in conditions_of(conditions, protocol, designs)
     }
     count, done, tables = sum(map(len, chosen.values())), 0, []
-    for name, values in chosen.items():
-        for level in values:
-            if progress is not None:
-                progress(done, count, name)
-            setting = CONDITIONS[name].setting(float(level))
-            evaluations = evaluate_many(
-                policies,
-                _under(protocol, setting),
-                workers=workers,
-                kept=0,
-                overrides=[dict(setting.design(d)) if setting.design else {} for d in designs],
-                alterations=setting.alterations or None,
-            )
-            table = trial_table(evaluations)
-            table.insert(0, "condition", name)
-            table.insert(1, "level", float(level))
-            tables.append(table)
-            done += 1
+    with nullcontext(pool) if pool else evaluation_pool(workers) as processes:
+        for name, values in chosen.items():
+            for level in values:
+                if progress is not None:
+                    progress(done, count, name)
+                setting = CONDITIONS[name].setting(float(level))
+                evaluations = evaluate_many(
+                    policies,
+                    _under(protocol, setting),
+                    workers=workers,
+                    pool=processes,
+                    kept=0,
+                    overrides=[dict(setting.design(d)) if setting.design else {} for d in designs],
+                    alterations=setting.alterations or None,
+                )
+                table = trial_table(evaluations)
+                table.insert(0, "condition", name)
+                table.insert(1, "level", float(level))
+                tables.append(table)
+                done += 1
     if progress is not None:
         progress(done, count, name)
     return pd.concat(tables, ignore_index=True)

@@ -4,6 +4,7 @@ numbers.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.evaluation import paper
@@ -39,31 +40,29 @@ def robot(context: Context) -> Made:
     analysis = analyze(context.design)
     write_json(context.folder / "analysis.json", analysis)
     design = context.design
-    drawn = [
-        context.picture(
-            "dimensions",
+    scenes_of = {
+        "dimensions": (
             "Dimensions [mm]; leg length and height are the paper's, the rest is assumed.",
-            lambda p: picture.render(scenes.dimensions_scene(design), p),
-            chart=False,
+            scenes.dimensions_scene(design),
         ),
-        context.picture(
-            "frames",
+        "frames": (
             "Joint axes: an arrow points along the axis about which the angle is positive.",
-            lambda p: picture.render(scenes.frames_scene(design), p),
-            chart=False,
+            scenes.frames_scene(design),
         ),
-        context.picture(
-            "masses",
+        "masses": (
             "Segment masses at their centres of mass; balls have the volume of that mass at 6.5 kg/dm³.",
-            lambda p: picture.render(scenes.masses_scene(design), p),
-            chart=False,
+            scenes.masses_scene(design),
         ),
-    ]
-    side_by_side = context.picture(
-        "variants",
-        "The four variants; orange: active toe and its motor.",
-        lambda p: picture.render(scenes.variants_scene(context.variants), p),
-        chart=False,
+        "variants": (
+            "The four variants; orange: active toe and its motor.",
+            scenes.variants_scene(context.variants),
+        ),
+    }
+    *drawn, side_by_side = context.picture.together(
+        [
+            (name, caption, partial(picture.render, scene), ".png", True)
+            for name, (caption, scene) in scenes_of.items()
+        ]
     )
     confound = ablation.confound(design)
     rows = []
@@ -77,7 +76,7 @@ def robot(context: Context) -> Made:
         ]
         rows.append([*cells, entry["removes"]])
     content = [
-        [*drawn],
+        drawn,
         side_by_side,
         Table(
             [

@@ -18,7 +18,7 @@ from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.sweep.spaces.axis import Axis
 from hyperleg_design.sweep.spaces.definition import Map, Sweep
 
-MOST_POINTS = 1500
+MOST_POINTS = 1000
 """Designs of a page's explorer; of larger sweeps those of the fronts and maps and an even sample
 of the others."""
 _NO_GEOMETRY = (
@@ -141,18 +141,20 @@ def _drawings(
         for a in sweep.axes
         if not all(any(word in path for word in _NO_GEOMETRY) for path in a.paths)
     ]
-    known: dict[tuple[Any, ...], int] = {}
-    drawings: list[Any] = []
-    robot = []
-    for row, variant in enumerate(variants):
-        key = (str(variant), *(str(axes[name][row]) for name in shaping))
+    known: dict[tuple[str, ...], int] = {}
+    drawn: dict[str, list[int]] = {}
+    keys = list(zip(map(str, variants), *(map(str, axes[name]) for name in shaping), strict=True))
+    for row, key in enumerate(keys):
         if key not in known:
-            sample = {name: values[row : row + 1] for name, values in axes.items()}
-            design = sweep.design(sample, str(variant))
-            known[key] = len(drawings)
-            drawings.append(side_view(design.take(0) if design.batch_shape else design))
-        robot.append(known[key])
-    return drawings, robot
+            known[key] = len(known)
+            drawn.setdefault(key[0], []).append(row)
+    drawings: list[Any] = [None] * len(known)
+    for variant, rows in drawn.items():
+        designs = sweep.design({name: values[rows] for name, values in axes.items()}, variant)
+        for place, row in enumerate(rows):
+            one = designs.take(place) if designs.batch_shape else designs
+            drawings[known[keys[row]]] = side_view(one)
+    return drawings, [known[key] for key in keys]
 
 
 def side_view(design: RobotDesign) -> list[list[float]]:

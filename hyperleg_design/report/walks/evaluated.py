@@ -7,10 +7,11 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hyperleg_design.evaluation.evaluate import evaluate_many, protocol_for
+from hyperleg_design.evaluation.evaluate import evaluate_many, evaluation_pool, protocol_for
 from hyperleg_design.evaluation.policy import load_policy
 from hyperleg_design.evaluation.protocol import Protocol, TTestProtocol, load_protocol
 from hyperleg_design.evaluation.result import Evaluation
@@ -151,6 +152,8 @@ def evaluate_shipped(
     walk: Protocol | None = None,
     t_test: Protocol | None = None,
     band: Sequence[float] = TIME_CONSTANTS,
+    late: bool = True,
+    speed_seeds: int = BAND_SEEDS,
     workers: int | None = None,
     progress: Callable[[int, int, str], None] | None = None,
 ) -> Evaluated:
@@ -164,6 +167,8 @@ def evaluate_shipped(
         t_test: protocol of policies that run to waypoints; the shipped one by default.
         band: time constants of the contact over which walks are repeated [s]; none to leave that
             out.
+        late: whether policies shortly before the end of a training count beside its last one.
+        speed_seeds: trainings of each design that walk at every speed of `SPEED`.
         workers: processes; as many as the machine has processors by default.
         progress: called with how many of how many evaluations are done, and which was the last.
 
@@ -173,7 +178,7 @@ def evaluate_shipped(
     Raises:
         InputError: no such folder, a policy that cannot be used, or the same policy twice.
     """
-    policies, rewarded = compared_policies(folder), rewarded_policies(folder)
+    policies, rewarded = compared_policies(folder, late=late), rewarded_policies(folder)
     check_different(policy.path for policy in [*policies, *rewarded])
     protocols = {WALK: walk or load_protocol("walk"), T_TEST: t_test or load_protocol("t_test")}
     few = protocols[WALK].changed(trials=min(BAND_TRIALS, int(protocols[WALK].trials)))
@@ -191,17 +196,20 @@ def evaluate_shipped(
             progress(done, count, evaluation.policy)
 
     processes = workers or os.cpu_count() or 1
-    evaluations = _under_own_protocols(policies, kinds, protocols, processes, note)
-    walks = _over_contacts(banded, band, few, processes, note)
-    speeds = {
-        group: robustness([p.path for p in some], [SPEED], protocol=few, workers=processes)
-        for group, some in _free(policies, kinds).items()
-    }
-    rewards = None
-    if rewarded:
-        paths = [policy.path for policy in rewarded]
-        some = evaluate_many(paths, protocols[WALK], workers=processes, kept=0, progress=note)
-        rewards = _trials(list(zip(rewarded, some, strict=True)))
+    with evaluation_pool(processes) as pool:
+        evaluating = partial(evaluate_many, workers=processes, pool=pool, progress=note)
+        evaluations = _under_own_protocols(policies, kinds, protocols, evaluating)
+        walks = _over_contacts(banded, band, few, evaluating)
+        speeds = {
+            group: robustness(
+                [p.path for p in some], [SPEED], protocol=few, workers=processes, pool=pool
+            )
+            for group, some in _free(policies, kinds, speed_seeds).items()
+        }
+        rewards = None
+        if rewarded:
+            some = evaluating([p.path for p in rewarded], protocols[WALK], kept=0)
+            rewards = _trials(list(zip(rewarded, some, strict=True)))
     return Evaluated(policies, evaluations, missing_trainings(policies), walks, speeds, rewards)
 
 
@@ -218,8 +226,7 @@ def _under_own_protocols(
     policies: Sequence[Shipped],
     kinds: Sequence[str],
     protocols: Mapping[str, Protocol],
-    workers: int,
-    note: Callable[[Evaluation], None],
+    evaluating: Callable[..., list[Evaluation]],
 ) -> list[Evaluation]:
     """Evaluate each policy under the protocol of its kind; the first last policy of each group and
     design keeps the signals of one trial.
@@ -229,13 +236,8 @@ def _under_own_protocols(
     for kind, protocol in protocols.items():
         places = [i for i, own in enumerate(kinds) if own == kind]
         if places:
-            of_kind = evaluate_many(
-                [policies[i].path for i in places],
-                protocol,
-                workers=workers,
-                kept=[int(i in shown.values()) for i in places],
-                progress=note,
-            )
+            kept = [int(i in shown.values()) for i in places]
+            of_kind = evaluating([policies[i].path for i in places], protocol, kept=kept)
             evaluations |= dict(zip(places, of_kind, strict=True))
     return [evaluations[i] for i in range(len(policies))]
 
@@ -244,20 +246,17 @@ def _over_contacts(
     policies: Sequence[Shipped],
     constants: Sequence[float],
     protocol: Protocol,
-    workers: int,
-    note: Callable[[Evaluation], None],
+    evaluating: Callable[..., list[Evaluation]],
 ) -> dict[str, dict[float, list[Evaluation]]]:
     """Evaluate policies on contacts of several time constants [s], by design and constant."""
     jobs = [(policy, constant) for policy in policies for constant in constants]
     if not jobs:
         return {}
-    walks = evaluate_many(
+    walks = evaluating(
         [policy.path for policy, _ in jobs],
         protocol,
-        workers=workers,
         kept=0,
         overrides=[{"contact.time_constant": constant} for _, constant in jobs],
-        progress=note,
     )
     by_design: dict[str, dict[float, list[Evaluation]]] = {}
     for (policy, constant), evaluation in zip(jobs, walks, strict=True):
@@ -285,7 +284,9 @@ def _banded(policies: Sequence[Shipped], kinds: Sequence[str]) -> list[Shipped]:
     ]
 
 
-def _free(policies: Sequence[Shipped], kinds: Sequence[str]) -> dict[str, list[Shipped]]:
+def _free(
+    policies: Sequence[Shipped], kinds: Sequence[str], seeds: int
+) -> dict[str, list[Shipped]]:
     """Last policies of the first trainings of each group and design that choose their cadence by
     themselves over all speeds of `SPEED`, by group.
     """
@@ -300,7 +301,7 @@ def _free(policies: Sequence[Shipped], kinds: Sequence[str]) -> dict[str, list[S
             continue
         key = (policy.group, policy.design)
         counts[key] = counts.get(key, 0) + 1
-        if counts[key] <= BAND_SEEDS:
+        if counts[key] <= seeds:
             chosen.setdefault(policy.group, []).append(policy)
     return chosen
 

@@ -63,6 +63,7 @@ def table_four(evaluated: Evaluated, draw: Drawer) -> Part:
                 False,
             )
             for design, trial in shown.items()
+            if design in VARIANTS
         ]
         content.append(draw.together(animations))
         content.append(time_table(runs, group, step))
