@@ -152,8 +152,8 @@ def _drawings(
     for variant, rows in drawn.items():
         designs = sweep.design({name: values[rows] for name, values in axes.items()}, variant)
         for place, row in enumerate(rows):
-            one = designs.take(place) if designs.batch_shape else designs
-            drawings[known[keys[row]]] = side_view(one)
+            design = designs.take(place) if designs.batch_shape else designs
+            drawings[known[keys[row]]] = side_view(design)
     return drawings, [known[key] for key in keys]
 
 

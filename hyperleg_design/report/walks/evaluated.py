@@ -236,8 +236,8 @@ def _under_own_protocols(
     for kind, protocol in protocols.items():
         places = [i for i, own in enumerate(kinds) if own == kind]
         if places:
-            kept = [int(i in shown.values()) for i in places]
-            of_kind = evaluating([policies[i].path for i in places], protocol, kept=kept)
+            signals = [int(i in shown.values()) for i in places]
+            of_kind = evaluating([policies[i].path for i in places], protocol, kept=signals)
             evaluations |= dict(zip(places, of_kind, strict=True))
     return [evaluations[i] for i in range(len(policies))]
 
