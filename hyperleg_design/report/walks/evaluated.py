@@ -153,7 +153,7 @@ def evaluate_shipped(
     t_test: Protocol | None = None,
     band: Sequence[float] = TIME_CONSTANTS,
     late: bool = True,
-    speed_seeds: int = BAND_SEEDS,
+    over_speeds: bool = True,
     workers: int | None = None,
     progress: Callable[[int, int, str], None] | None = None,
 ) -> Evaluated:
@@ -168,7 +168,7 @@ def evaluate_shipped(
         band: time constants of the contact over which walks are repeated [s]; none to leave that
             out.
         late: whether policies shortly before the end of a training count beside its last one.
-        speed_seeds: trainings of each design that walk at every speed of `SPEED`.
+        over_speeds: whether the first trainings of each design also walk at every speed of `SPEED`.
         workers: processes; as many as the machine has processors by default.
         progress: called with how many of how many evaluations are done, and which was the last.
 
@@ -204,7 +204,7 @@ def evaluate_shipped(
             group: robustness(
                 [p.path for p in some], [SPEED], protocol=few, workers=processes, pool=pool
             )
-            for group, some in _free(policies, kinds, speed_seeds).items()
+            for group, some in (_free(policies, kinds) if over_speeds else {}).items()
         }
         rewards = None
         if rewarded:
@@ -284,9 +284,7 @@ def _banded(policies: Sequence[Shipped], kinds: Sequence[str]) -> list[Shipped]:
     ]
 
 
-def _free(
-    policies: Sequence[Shipped], kinds: Sequence[str], seeds: int
-) -> dict[str, list[Shipped]]:
+def _free(policies: Sequence[Shipped], kinds: Sequence[str]) -> dict[str, list[Shipped]]:
     """Last policies of the first trainings of each group and design that choose their cadence by
     themselves over all speeds of `SPEED`, by group.
     """
@@ -301,7 +299,7 @@ def _free(
             continue
         key = (policy.group, policy.design)
         counts[key] = counts.get(key, 0) + 1
-        if counts[key] <= seeds:
+        if counts[key] <= BAND_SEEDS:
             chosen.setdefault(policy.group, []).append(policy)
     return chosen
 
