@@ -97,8 +97,9 @@ def _steered(signals: Signals) -> Signals:
     """With targets by which the controllers would ask for just what the motion needs, where its
     residual rests on them alone.
     """
-    if signals.target is None or signals.measured is not None or "control" in signals.residual:
+    if not signals.steered:
         return signals
+    assert signals.target is not None
     stiffness, damping = signals.subject.gains.T
     with np.errstate(divide="ignore", invalid="ignore"):
         target = signals.position + (signals.rigid + damping * signals.velocity) / stiffness

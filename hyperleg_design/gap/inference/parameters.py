@@ -15,14 +15,35 @@ NORMAL = 1.96
 """Standard deviations of a normal distribution's 95 % interval."""
 
 
+OF_TORQUE = ("Nm", "kg")
+"""Beginnings of units that scale with the torques of the drives."""
+
+
 def intervals(
-    cause: Cause, values: np.ndarray, deviation: np.ndarray, subject: Subject
+    cause: Cause,
+    values: np.ndarray,
+    deviation: np.ndarray,
+    subject: Subject,
+    torque_error: float = 0.0,
 ) -> dict[str, Value]:
-    """Values `(k,)` of a cause with 95 % intervals from their standard deviations `(k,)`."""
+    """State the values of a cause with 95 % intervals.
+
+    Args:
+        cause: the cause.
+        values: of its parameters `(k,)`.
+        deviation: standard deviations of the values `(k,)`.
+        subject: the robot.
+        torque_error: standard deviation of the scale of all torques [-].
+
+    Returns:
+        Values by the name of the parameter, and what follows from them.
+    """
     found = {}
     effect = EFFECTS[cause.effect]
     for i, parameter in enumerate(effect.parameters):
         rough = effect.rough.get(parameter.name, 0.0) * abs(values[i])
+        if parameter.unit.startswith(OF_TORQUE):
+            rough = np.hypot(rough, torque_error * values[i])
         reach = NORMAL * np.hypot(deviation[i], rough)
         low, high = max(values[i] - reach, cause.low[i]), min(values[i] + reach, cause.high[i])
         found[parameter.name] = Value(float(values[i]), float(low), float(high), parameter.unit)

@@ -149,6 +149,9 @@ class PosteriorRules:
     interval: float = 1.4
     """Factor on the standard deviations of parameters [-]: what models of friction and drives get
     wrong is in none of them (developed)."""
+    torque_error: float = 0.1
+    """Standard deviation of the scale of torques that nothing tells but targets and the gains that
+    logs declare [-]: those rest on torque constants of data sheets (assumed)."""
     most_certain: float = 0.94
     """Highest probability that is stated [-] (measured: of 71 answers to development cases of the
     benchmark with 0.95 or more, 67 were right; without any one of its robots 93 to 96 %)."""

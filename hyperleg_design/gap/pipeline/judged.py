@@ -20,6 +20,7 @@ from hyperleg_design.gap.inference.gap_size import GapSize
 from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
 from hyperleg_design.gap.inference.parameters import intervals
 from hyperleg_design.gap.inference.posterior import Posterior, expanded, posterior_of
+from hyperleg_design.gap.inference.reference_differences import FEWEST, Difference, differences
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.search import Result, Search
 from hyperleg_design.gap.results.diagnosis import (
@@ -67,17 +68,42 @@ def judge_signals(
     Returns:
         The diagnosis.
     """
-    evidence = evidence_of(signals, references, rules)
-    search = Search(evidence, rules, places, threads)
-    result = search.result()
+    search, result = _searched(signals, references, places, rules, threads)
+    apart: list[Difference] = []
+    while len(apart) < len(references) - 1 and (odd := differences(search, result)):
+        tried = [
+            (difference, *_searched(signals, mended, places, rules, threads))
+            for difference in (odd if len(references) == FEWEST else odd[:1])
+            for mended in [difference.taken_out(references)]
+        ]  # which of two is the odd one, they do not say: the one without which less has changed
+        difference, search, result = min(tried, key=lambda entry: _gain(*entry[1:]))
+        references = search.evidence.references
+        apart.append(difference)
+    evidence = search.evidence
     held = predicted(evidence, result.best, rules)
     size = GapSize.of(evidence, result.best, held, rules)
     answer = _Answer(
-        evidence, result, posterior_of(result, evidence, size, rules), size, rules, seed
+        evidence, result, posterior_of(result, evidence, size, rules), size, rules, seed, apart
     )
     return answer.diagnosis(
         checks, tuple(one.mapping() for one in detectable(search)) if sensitivity else ()
     )
+
+
+def _searched(
+    signals: Sequence[Signals],
+    references: Sequence[Signals],
+    places: Sequence[tuple[str, str]],
+    rules: InferenceRules,
+    threads: int,
+) -> tuple[Search, Result]:
+    search = Search(evidence_of(signals, references, rules), rules, places, threads)
+    return search, search.result()
+
+
+def _gain(search: Search, result: Result) -> float:
+    """What the causes gain over none [nat]."""
+    return result.best.score - search.fits.nothing.score
 
 
 class _Answer:
@@ -91,9 +117,10 @@ class _Answer:
         size: GapSize,
         rules: InferenceRules,
         seed: int,
+        apart: Sequence[Difference] = (),
     ) -> None:
         self.evidence, self.result, self.posterior, self.size = evidence, result, posterior, size
-        self.rules, self.seed = rules, seed
+        self.rules, self.seed, self.apart = rules, seed, apart
 
     def diagnosis(self, checks: Sequence[Check], sensitivity: Any) -> Diagnosis:
         """Collect the whole answer from the parts that were computed.
@@ -175,10 +202,16 @@ class _Answer:
             clear = np.abs(values - cause.nulls) / np.maximum(deviation, 1e-300)
             stands = float(np.max(np.where(cause.shape, 0.0, clear)))
             closed = self.closed_by(hypothesis, place)
-            sizes = intervals(cause, values, deviation, subject)
+            sizes = intervals(cause, values, deviation, subject, self.torque_error)
             found.append((stands, Named(cause.effect, cause.location, probability, closed, sizes)))
         clear_ones = [named for stands, named in found if stands >= CLEAR]
         return clear_ones or [max(found, key=lambda one: one[0])[1]]
+
+    @property
+    def torque_error(self) -> float:
+        """Standard deviation of the scale of all torques [-]."""
+        steered = all(signals.steered for signals in self.evidence.signals)
+        return self.rules.posterior.torque_error if steered else 0.0
 
     def closed_by(self, hypothesis: Hypothesis, place: int) -> float:
         """Share of the gap that one cause closes; of a standing one, of the gap that is left where
@@ -288,8 +321,8 @@ class _Answer:
         return tuple(found)
 
     def remarks(self, checks: Sequence[Check]) -> tuple[str, ...]:
-        """Remarks on the logs."""
-        found = []
+        """Remarks on the logs; that references differ, first."""
+        found = [difference.text for difference in self.apart]
         for check in checks:
             found += [
                 f"{check.name}: {f.severity}: {f.signal + ' ' if f.signal else ''}{f.what}"

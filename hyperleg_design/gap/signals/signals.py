@@ -132,3 +132,11 @@ class Signals:
         see `supply`.
         """
         return over_nominal(self.subject, self.voltage)
+
+    @property
+    def steered(self) -> bool:
+        """Whether targets and the controllers' declared gains alone tell torques: none was measured
+        and no command is logged.
+        """
+        logged = self.measured is not None or "control" in self.residual
+        return self.target is not None and not logged

@@ -11,7 +11,7 @@ from hyperleg_design.gap.inference.parameters import NORMAL, intervals
 SUBJECT = SimpleNamespace(joints=("swing",), default=np.zeros(1))
 
 
-def values_of(effect, values, deviation):
+def values_of(effect, values, deviation, torque_error=0.0):
     """Intervals of one cause with given values and standard deviations of its parameters."""
     one = EFFECTS[effect]
     count = len(one.nulls)
@@ -30,7 +30,7 @@ def values_of(effect, values, deviation):
         none,
         True,
     )
-    return intervals(cause, np.array(values), np.array(deviation), SUBJECT)
+    return intervals(cause, np.array(values), np.array(deviation), SUBJECT, torque_error)
 
 
 def test_a_limit_is_told_with_the_interval_of_its_inverse():
@@ -71,3 +71,10 @@ def test_sizes_of_belts_are_no_better_known_than_their_traces():
 
 def test_an_interval_holds_nineteen_in_twenty():
     assert norm.cdf(NORMAL) - norm.cdf(-NORMAL) == pytest.approx(0.95, abs=1e-4)
+
+
+def test_sizes_in_units_of_torque_are_no_better_known_than_the_torques():
+    friction = values_of("coulomb_friction", [0.3], [0.004], torque_error=0.1)["torque"]
+    assert friction.high - 0.3 == pytest.approx(1.96 * np.hypot(0.004, 0.03), rel=1e-6)
+    gains = values_of("controller_gain", [0.8, 1.0], [0.004, 0.0], torque_error=0.1)
+    assert gains["stiffness_scale"].high - 0.8 == pytest.approx(1.96 * 0.004, rel=1e-6)

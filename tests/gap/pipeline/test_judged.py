@@ -92,3 +92,18 @@ def test_a_log_told_twice_in_one_session_gives_no_other_cause(robot_files, visco
     twice = found(robot_files, "viscous", seeds=(0, 1, 0, 1))
     assert twice.causes[0].effect == viscous.causes[0].effect
     assert twice.causes[0].location == viscous.causes[0].location
+
+
+@pytest.mark.parametrize("kind", ["healthy", "viscous"])
+def test_a_reference_that_differs_from_the_others_is_told_and_gives_no_cause(robot_files, kind):
+    logs = [diagnosed.run(kind, s, session="today") for s in (0, 1)]
+    kinds = {2: "healthy", 3: "dry", 4: "healthy"}
+    references = [
+        diagnosed.run(one, s, session=f"before {s}", role="reference") for s, one in kinds.items()
+    ]
+    result = diagnose(robot_files["coupled"], logs, references, threads=1)
+    expected = [("viscous_friction", "knee")] if kind == "viscous" else []
+    assert [(one.effect, one.location) for one in result.causes] == expected
+    assert result.checks[0].startswith(
+        "dry_3: differs from the other reference logs by coulomb_friction at hip"
+    )
