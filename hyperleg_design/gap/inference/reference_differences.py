@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hyperleg_design.gap.effects import EFFECTS, WEIGHED
+from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.crossing import Crossing
@@ -39,10 +39,13 @@ class Difference:
     """Place among the references."""
     log: str
     """Its name."""
-    effect: str
-    location: str
+    cause: Cause
     values: np.ndarray
     """Of the effect's parameters."""
+    deviation: np.ndarray
+    """Their standard deviations."""
+    odds: float
+    """Log posterior odds of the best hypothesis with it over the best without [nat]."""
 
     def taken_out(self, references: Sequence[Signals]) -> list[Signals]:
         """References without what this effect leaves in one of them.
@@ -54,27 +57,14 @@ class Difference:
             The same, one of them changed.
         """
         odd = references[self.reference]
-        traces = EFFECTS[self.effect].trace(odd, self.location, self.values[None])
+        effect = WEIGHED[self.cause.effect]
+        traces = effect.trace(odd, self.cause.location, self.values[None])
         residual = {
             name: rows - traces[name][0] if name in traces else rows
             for name, rows in odd.residual.items()
         }
         before, after = references[: self.reference], references[self.reference + 1 :]
         return [*before, replace(odd, residual=residual), *after]
-
-    @property
-    def text(self) -> str:
-        """Say so in one sentence."""
-        numbers = zip(EFFECTS[self.effect].parameters, self.values.tolist(), strict=True)
-        stated = ", ".join(
-            f"{parameter.name} {value:.3g} {parameter.unit}".strip()
-            for parameter, value in numbers
-            if value != parameter.null and not parameter.shape
-        )
-        return (
-            f"{self.log}: differs from the other reference logs by {self.effect} at "
-            f"{self.location} ({stated}), which was taken out of it"
-        )
 
 
 def differences(search: Search, result: Result) -> list[Difference]:
@@ -97,19 +87,20 @@ def differences(search: Search, result: Result) -> list[Difference]:
         traces = _traces_in(search, mask)
         promises = Promises(evidence, search.rules, traces, search.threads)
         beside = [
-            _beside(search, promises, one, mask, number) for one in result.hypotheses[:BESIDE]
+            difference
+            for hypothesis in (result.hypotheses[:BESIDE] if traces else ())
+            if (difference := _beside(search, promises, hypothesis, mask, number)) is not None
         ]
-        own = [(score, difference) for pair in beside if pair for score, difference in [pair]]
-        score, difference = max(own, key=lambda pair: pair[0], default=(-np.inf, None))
-        if difference is not None and score > result.best.score:
-            odd.append((score, difference))
-    odd.sort(key=lambda pair: (-pair[0], pair[1].reference))
-    return [difference for _, difference in odd]
+        odd += sorted(beside, key=lambda difference: -difference.odds)[:1]
+    best = result.best.score
+    odd = [replace(difference, odds=difference.odds - best) for difference in odd]
+    odd.sort(key=lambda difference: (-difference.odds, difference.reference))
+    return [difference for difference in odd if difference.odds > 0]
 
 
 def _beside(
     search: Search, promises: Promises, hypothesis: Hypothesis, mask: np.ndarray, number: int
-) -> tuple[float, Difference] | None:
+) -> Difference | None:
     """Fit the most promising effect in one reference beside a hypothesis.
 
     Args:
@@ -120,23 +111,23 @@ def _beside(
         number: place among the references.
 
     Returns:
-        Log posterior probability of both together [nat], and the difference; None where nothing
-        shows there.
+        The difference, with the log posterior probability of both [nat] as its odds; None where
+        nothing shows there.
     """
-    scales = eased(search.evidence, hypothesis.scales, search.rules)
-    for promise in promises.beside(hypothesis.causes, scales)[:1] if promises.traces else ():
-        cause = _linearised(search, hypothesis, promise, promises.traces[promise.name], mask)
-        if cause is None:
-            return None
-        candidate = Candidate(promise.effect, promise.location, (cause,))
-        fitted = search.fits.fit((*hypothesis.candidates, candidate), hypothesis.scales)
-        values = fitted.values(len(fitted.causes) - 1)
-        name = search.evidence.references[number].log.name
-        difference = Difference(number, name, promise.effect, promise.location, values)
-        tried = len(search.count) * search.count[promise.effect] * len(search.evidence.references)
-        chance = float(np.log(search.rules.cause.changed / tried))
-        return fitted.log_evidence + hypothesis.log_prior + chance, difference
-    return None
+    evidence = search.evidence
+    scales = eased(evidence, hypothesis.scales, search.rules)
+    promise = promises.beside(hypothesis.causes, scales)[0]
+    cause = _linearised(search, hypothesis, promise, promises.traces[promise.name], mask)
+    if cause is None:
+        return None
+    candidate = Candidate(promise.effect, promise.location, (cause,))
+    fitted = search.fits.fit((*hypothesis.candidates, candidate), hypothesis.scales)
+    place = len(fitted.causes) - 1
+    tried = len(search.count) * search.count[promise.effect] * len(evidence.references)
+    chance = float(np.log(search.rules.cause.changed / tried))
+    together = fitted.log_evidence + hypothesis.log_prior + chance
+    log = evidence.references[number].log.name
+    return Difference(number, log, cause, fitted.values(place), fitted.deviation(place), together)
 
 
 def _traces_in(search: Search, mask: np.ndarray) -> dict[Name, screen.Traces]:

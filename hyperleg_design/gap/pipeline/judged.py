@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.special import expit
 
 from hyperleg_design import provenance
 from hyperleg_design.gap.checks.check import Check
@@ -170,6 +171,7 @@ class _Answer:
             provenance=self.provenance(),
             remainder=left,
             lacks=self.lacks() if self.evidence.references else None,
+            reference_differences=self.differences(),
         )
 
     def lacks(self) -> dict[str, Any]:
@@ -179,6 +181,18 @@ class _Answer:
             "verdict": "explained" if causes else "none",
             "causes": [one.mapping() for one in causes],
         }
+
+    def differences(self) -> tuple[dict[str, Any], ...]:
+        """What was taken out of references that differed from the others."""
+        own, subject = self.rules.posterior, self.evidence.signals[0].subject
+        stated = []
+        for difference in self.apart:
+            probability = min(float(expit(own.temperature * difference.odds)), own.most_certain)
+            deviation, cause = own.interval * difference.deviation, difference.cause
+            sizes = intervals(cause, difference.values, deviation, subject, self.torque_error)
+            named = Named(cause.effect, cause.location, probability, 0.0, sizes)
+            stated.append({"log": difference.log, **named.mapping()})
+        return tuple(stated)
 
     def causes(self, places: Sequence[int]) -> tuple[Named, ...]:
         """Some candidates of the most probable hypothesis, in their order."""
@@ -321,8 +335,8 @@ class _Answer:
         return tuple(found)
 
     def remarks(self, checks: Sequence[Check]) -> tuple[str, ...]:
-        """Remarks on the logs; that references differ, first."""
-        found = [difference.text for difference in self.apart]
+        """Remarks on the logs."""
+        found = []
         for check in checks:
             found += [
                 f"{check.name}: {f.severity}: {f.signal + ' ' if f.signal else ''}{f.what}"

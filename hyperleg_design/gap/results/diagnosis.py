@@ -148,6 +148,9 @@ class Diagnosis:
     lacks: Mapping[str, Any] | None = None
     """With reference logs, what the model lacks of them already: `verdict` and `causes` in the same
     form; no part of the verdict."""
+    reference_differences: tuple[Mapping[str, Any], ...] = ()
+    """Reference logs that differed from the others: `log`, and by what, as a cause in the same
+    form. It was taken out of the log before tests were compared with it."""
 
     def mapping(self) -> dict[str, Any]:
         """Write the diagnosis as `diagnosis.json` holds it.
@@ -160,8 +163,8 @@ class Diagnosis:
             [{"effect": effect, "location": place} for effect, place in group]
             for group in self.equivalent
         ]
-        for name in ("remainder", "lacks"):
-            if content[name] is None:
+        for name in ("remainder", "lacks", "reference_differences"):
+            if content[name] in (None, ()):
                 del content[name]
         rounded: dict[str, Any] = _rounded(content)
         return rounded

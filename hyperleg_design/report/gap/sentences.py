@@ -186,8 +186,8 @@ def places_of(diagnosis: Entry) -> list[str]:
 
 
 def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
-    """Write what follows the verdict: how far the gap shrinks, what remains, what joints do at
-    rest, and what the model lacks already.
+    """Write what follows the verdict: which references differ, how far the gap shrinks, what
+    remains, what joints do at rest, and what the model lacks already.
 
     Args:
         diagnosis: as `diagnosis.json` holds it.
@@ -196,7 +196,12 @@ def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
     Returns:
         Sentences.
     """
-    texts, gap, remainder = [], diagnosis["gap"], diagnosis.get("remainder")
+    gap, remainder = diagnosis["gap"], diagnosis.get("remainder")
+    texts = [
+        f"The reference log {one['log']} differs from the others by {phrase([one])}, which was "
+        f"taken out of it."
+        for one in diagnosis.get("reference_differences", ())
+    ]
     if diagnosis["causes"]:
         closed = float(gap["closed"])
         low, high = (100 * float(v) for v in gap["closed_interval"])

@@ -104,6 +104,7 @@ def test_a_reference_that_differs_from_the_others_is_told_and_gives_no_cause(rob
     result = diagnose(robot_files["coupled"], logs, references, threads=1)
     expected = [("viscous_friction", "knee")] if kind == "viscous" else []
     assert [(one.effect, one.location) for one in result.causes] == expected
-    assert result.checks[0].startswith(
-        "dry_3: differs from the other reference logs by coulomb_friction at hip"
-    )
+    odd = result.reference_differences[0]
+    assert (odd["log"], odd["effect"], odd["location"]) == ("dry_3", "coulomb_friction", "hip")
+    assert odd["parameters"]["torque"]["low"] < 0.8 < odd["parameters"]["torque"]["high"]
+    assert result.mapping()["reference_differences"][0]["log"] == "dry_3"

@@ -138,8 +138,10 @@ def test_a_remainder_and_what_references_lack_stand_below_the_verdict(
         causes=[CAUSE],
         remainder=0.18,
         lacks={"verdict": "explained", "causes": [CAUSE]},
+        reference_differences=[{"log": "monday", **CAUSE}],
     )
     text = written(tmp_path, told, signals)
+    assert "The reference log monday differs from the others by Coulomb friction" in text
     assert "18 % of the gap is left that no effect explains." in text
     assert "The reference logs already show what the model lacks: Coulomb friction" in text
 

@@ -102,6 +102,14 @@ def test_what_references_lack_and_what_remains_is_told():
     assert "lack" not in diagnosis_text(diagnosis(lacks=None))
 
 
+def test_a_reference_that_differs_is_told_before_the_causes():
+    odd = {"log": "monday", **diagnosis()["causes"][0], "location": "hip"}
+    lines = diagnosis_text(diagnosis(reference_differences=[odd])).splitlines()
+    (line,) = (one for one in lines if "monday" in one)
+    assert line.startswith("  reference monday differs from the others; taken out of it: torque_")
+    assert lines.index(line) < min(i for i, one in enumerate(lines) if one.startswith("  cause"))
+
+
 def test_without_a_cause_only_the_noise_is_told():
     found = diagnosis(verdict="none", causes=[], rivals=[], separating_experiment=None)
     assert diagnosis_text(found).splitlines()[1] == "residuals [Nm]: 0.5, of which noise 0.1"
