@@ -26,9 +26,6 @@ from hyperleg_design.gap.signals.signals import Signals
 
 FEWEST = 2
 """References that can differ."""
-BESIDE = 4
-"""Most probable hypotheses beside which references are looked at: where one has what the logs under
-test have, the model may seem to lack it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +77,7 @@ def differences(search: Search, result: Result) -> list[Difference]:
     evidence = search.evidence
     if len(evidence.references) < FEWEST:
         return []
-    odd = []
+    odd, likely = [], result.hypotheses[: search.rules.search.beside]
     for number in range(len(evidence.references)):
         log = len(evidence.signals) + number
         mask = (evidence.samples.log[evidence.samples.part] == log).astype(float)
@@ -88,7 +85,7 @@ def differences(search: Search, result: Result) -> list[Difference]:
         promises = Promises(evidence, search.rules, traces, search.threads)
         beside = [
             difference
-            for hypothesis in (result.hypotheses[:BESIDE] if traces else ())
+            for hypothesis in (likely if traces else ())
             if (difference := _beside(search, promises, hypothesis, mask, number)) is not None
         ]
         odd += sorted(beside, key=lambda difference: -difference.odds)[:1]
@@ -116,7 +113,9 @@ def _beside(
     """
     evidence = search.evidence
     scales = eased(evidence, hypothesis.scales, search.rules)
-    promise = promises.beside(hypothesis.causes, scales)[0]
+    promise = next(iter(promises.beside(hypothesis.causes, scales)), None)
+    if promise is None:
+        return None
     cause = _linearised(search, hypothesis, promise, promises.traces[promise.name], mask)
     if cause is None:
         return None
