@@ -2,8 +2,9 @@
 what sets one apart.
 
 Each reference is looked at as if it were under test: an effect that acts in it alone is fitted
-beside the most probable hypotheses. Effects that scale torques are not tried: their likelihood is
-that of the logs under test.
+beside the best hypothesis and those that are about as probable. (The best may say that the model
+lacks what tests and this reference share.) Effects that scale torques are not tried: their
+likelihood is that of the logs under test.
 """
 
 from __future__ import annotations
@@ -77,7 +78,9 @@ def differences(search: Search, result: Result) -> list[Difference]:
     evidence = search.evidence
     if len(evidence.references) < FEWEST:
         return []
-    odd, likely = [], result.hypotheses[: search.rules.search.beside]
+    odd, best = [], result.best.score
+    least = best - search.rules.posterior.alike
+    likely = [hypothesis for hypothesis in result.hypotheses if hypothesis.score >= least]
     for number in range(len(evidence.references)):
         log = len(evidence.signals) + number
         mask = (evidence.samples.log[evidence.samples.part] == log).astype(float)
@@ -89,7 +92,6 @@ def differences(search: Search, result: Result) -> list[Difference]:
             if (difference := _beside(search, promises, hypothesis, mask, number)) is not None
         ]
         odd += sorted(beside, key=lambda difference: -difference.odds)[:1]
-    best = result.best.score
     odd = [replace(difference, odds=difference.odds - best) for difference in odd]
     odd.sort(key=lambda difference: (-difference.odds, difference.reference))
     return [difference for difference in odd if difference.odds > 0]

@@ -125,9 +125,6 @@ class SearchRules:
     """Gain in nats from which any is [nat] (assumed)."""
     groups: int = 2
     """Effects that are tried at all of their places at once in one step [-]."""
-    beside: int = 4
-    """Most probable hypotheses beside which what sets a reference apart is looked for [-]: the best
-    may say of what it has in common with the tests that the model lacks it (assumed)."""
     rounds: int = 12
     """Most rounds of fitting causes and scales in turn [-]."""
     settled: float = 0.05
