@@ -83,9 +83,9 @@ def test_a_tree_of_the_name_of_a_toe_layout_takes_no_hyperlegs_policy(tmp_path):
             "FOLDER/walk_any-parallel_ankle-0 trains one, and --policies FOLDER takes it",
         ),
         (
-            "walk",
+            "t_test",
             "toe_removed",
-            "hyperleg train --task walk --design toe_removed --out FOLDER/walk-toe_removed-0",
+            "hyperleg train --task goal --design toe_removed --out FOLDER/t_test-toe_removed-0",
         ),
         (
             "t_test",
