@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.report.page import Heading, Section
 from hyperleg_design.report.study.context import Made
-from hyperleg_design.report.walks.evaluated import T_TEST, WALK, Evaluated
+from hyperleg_design.report.walks.evaluated import T_TEST, TIME_CONSTANTS, WALK, Evaluated
 from hyperleg_design.report.walks.paper_page import evaluate_with_bar, policy_parts
 
 if TYPE_CHECKING:
     from hyperleg_design.report.study.context import Context
 
 TITLE = "Walking and the T-test, with trained policies"
-SAMPLE = "To finish in minutes, this page takes the last policy of each training. hyperleg paper also takes the policies shortly before the end of each training, as the analysis plan has it, and walks at other speeds; the README's results are those."
+SAMPLE = "To finish in minutes, this page takes the last policy of each training. hyperleg paper also takes the policies shortly before the end of each training, as the analysis plan has it, walks at other speeds and on more contacts; the README's results are those."
 NO_POLICY = (
     "The folder of trainings holds no finished one, so walks and T-tests are not shown; "
     "hyperleg campaign run trains them."
@@ -32,7 +32,11 @@ def experiment(context: Context) -> Made:
         The section, and its headline numbers.
     """
     evaluated = evaluate_with_bar(
-        context.policies, progress=context.progress, late=False, over_speeds=False
+        context.policies,
+        progress=context.progress,
+        late=False,
+        over_speeds=False,
+        band=TIME_CONSTANTS[::2],
     )
     if not evaluated.policies:
         return Made(Section(TITLE, [NO_POLICY]))
