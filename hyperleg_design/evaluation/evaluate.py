@@ -205,7 +205,7 @@ def evaluate_many(
         ),
     )
     evaluations = []
-    if workers == 1 or (count < 2 and pool is None):
+    if workers == 1 or count < 2:
         for job in jobs:
             evaluations.append(_evaluated(job))
             if progress is not None:

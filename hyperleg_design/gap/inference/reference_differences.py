@@ -157,7 +157,7 @@ def _cut(evidence: Evidence, cause: Cause, mask: np.ndarray) -> Cause:
     """A cause in one log alone."""
     constant = cause.constant * mask if len(cause.constant) else cause.constant
     cut = replace(cause, columns=cause.columns * mask, constant=constant, factors=())
-    return replace(evidence.acting(cut, False), factors=())
+    return evidence.acting(cut, False)
 
 
 def _linearised(

@@ -220,7 +220,10 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     rivals = [r for r in diagnosis["rivals"] if r["probability"] >= LEAST_PROBABILITY]
     lacks = (diagnosis.get("lacks") or {}).get("causes", [])
     groups = (
-        ("differs", diagnosis.get("reference_differences", ())),
+        *(
+            (f"reference {row['log']} differs from the others; taken out of it:", [row])
+            for row in diagnosis.get("reference_differences", ())
+        ),
         ("cause", diagnosis["causes"]),
         ("rival", rivals[:4]),
         ("model lacks", lacks),
@@ -235,11 +238,8 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
                 for n, p, choice in chosen(row["effect"], row["parameters"])
             )
             closes = f", closes {100 * row['closed']:.0f} %" if title == "cause" else ""
-            head = title
-            if title == "differs":
-                head = f"reference {row['log']} differs from the others; taken out of it:"
             lines.append(
-                f"  {head} {row['effect']} at {row['location']}: p {row['probability']:.2f}"
+                f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}"
                 f"{closes}; {words}"
             )
     if remainder := diagnosis.get("remainder"):
