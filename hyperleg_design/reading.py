@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import inspect
 import json
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -87,6 +89,11 @@ def parse_yaml(text: str) -> Any:
     Raises:
         yaml.YAMLError: malformed, a key twice, or a value that its own type forbids (a 13th month).
     """
+    return copy.deepcopy(_parsed(text))
+
+
+@lru_cache(maxsize=256)  # every design reads its base's file again
+def _parsed(text: str) -> Any:
     depth = 0
     for event in yaml.parse(
         text, Loader=_BASE

@@ -86,13 +86,18 @@ class Evidence:
             ),
         )
 
-    def acting(self, cause: Cause, standing: bool) -> Cause:
+    def acting(self, cause: Cause, standing: bool, only: np.ndarray | None = None) -> Cause:
         """A cause whose columns are those of its own logs, with columns of all samples.
 
         Args:
             cause: linearised on all samples, or on those under test where it acts there alone.
             standing: whether it acts in all logs.
+            only: 1 at the samples of the one log in which it acts, 0 elsewhere `(S,)`; None where
+                it acts in all logs or in those under test.
         """
+        if only is not None:
+            constant = cause.constant * only if len(cause.constant) else cause.constant
+            cause = replace(cause, columns=cause.columns * only, constant=constant, factors=())
         missing = len(self.samples.value) - cause.columns.shape[1]
         if self.references and not standing and cause.linear:
             bounds = WEIGHED[cause.effect].change_bounds(cause.location, self.signals[0].subject)

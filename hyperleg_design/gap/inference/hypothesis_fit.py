@@ -62,6 +62,8 @@ class HypothesisFit:
         traces: of each effect at each place.
         count: places of each effect that is tried.
         threads: that share the work; they change no result.
+        only: 1 at the samples of the one log in which new causes act, 0 elsewhere `(S,)`; None
+            where they act in all logs or in those under test.
     """
 
     def __init__(
@@ -71,9 +73,10 @@ class HypothesisFit:
         traces: Mapping[Name, screen.Traces],
         count: Mapping[str, int],
         threads: int = 1,
+        only: np.ndarray | None = None,
     ) -> None:
         self.evidence, self.rules, self.threads = evidence, rules, threads
-        self.traces, self.count = traces, count
+        self.traces, self.count, self.only = traces, count, only
 
     @cached_property
     def nothing(self) -> Hypothesis:
@@ -104,17 +107,14 @@ class HypothesisFit:
         low, high = effect.bounds(promise.location, subject)
         values = np.array(promise.values, float)
         scales = eased(self.evidence, current.scales, self.rules)
+        everywhere = promise.standing or self.only is not None
+        samples = self.evidence.samples if everywhere else self.evidence.tests
         best: tuple[float, Cause] | None = None
         for _ in range(self.rules.search.steps):
-            cause = screen.linearise(
-                self.evidence.samples if promise.standing else self.evidence.tests,
-                effect,
-                promise.location,
-                values,
-            )
+            cause = screen.linearise(samples, effect, promise.location, values)
             if cause is None:
                 break
-            cause = self.evidence.acting(cause, promise.standing)
+            cause = self.evidence.acting(cause, promise.standing, self.only)
             stack = Stack.of((*current.causes, cause), self.evidence.weight)
             crossing = Crossing.of(self.evidence.channels, stack.rows)
             reached = self._reached(stack, crossing, scales, cause)

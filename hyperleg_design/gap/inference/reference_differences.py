@@ -16,12 +16,10 @@ import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference import screen
-from hyperleg_design.gap.inference.assembly import Evidence
-from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.fit import Cause
-from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis, Name, Stack
-from hyperleg_design.gap.inference.hypothesis_fit import eased
-from hyperleg_design.gap.inference.promises import Promise, Promises
+from hyperleg_design.gap.inference.hypothesis import Hypothesis, Name
+from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit, eased
+from hyperleg_design.gap.inference.promises import Promises
 from hyperleg_design.gap.inference.search import Result, Search
 from hyperleg_design.gap.signals.signals import Signals
 
@@ -83,13 +81,14 @@ def differences(search: Search, result: Result) -> list[Difference]:
     likely = [hypothesis for hypothesis in result.hypotheses if hypothesis.score >= least]
     for number in range(len(evidence.references)):
         log = len(evidence.signals) + number
-        mask = (evidence.samples.log[evidence.samples.part] == log).astype(float)
-        traces = _traces_in(search, mask)
+        only = (evidence.samples.log[evidence.samples.part] == log).astype(float)
+        traces = _traces_in(search, only)
         promises = Promises(evidence, search.rules, traces, search.threads)
+        fits = HypothesisFit(evidence, search.rules, traces, search.count, search.threads, only)
         beside = [
             difference
             for hypothesis in (likely if traces else ())
-            if (difference := _beside(search, promises, hypothesis, mask, number)) is not None
+            if (difference := _beside(search, promises, fits, hypothesis, number)) is not None
         ]
         odd += sorted(beside, key=lambda difference: -difference.odds)[:1]
     odd = [replace(difference, odds=difference.odds - best) for difference in odd]
@@ -98,15 +97,15 @@ def differences(search: Search, result: Result) -> list[Difference]:
 
 
 def _beside(
-    search: Search, promises: Promises, hypothesis: Hypothesis, mask: np.ndarray, number: int
+    search: Search, promises: Promises, fits: HypothesisFit, hypothesis: Hypothesis, number: int
 ) -> Difference | None:
     """Fit the most promising effect in one reference beside a hypothesis.
 
     Args:
         search: on tests and references.
         promises: of effects that act in the reference alone.
+        fits: of effects that act in the reference alone.
         hypothesis: about tests and references.
-        mask: 1 at the samples of the reference, 0 elsewhere `(S,)`.
         number: place among the references.
 
     Returns:
@@ -118,20 +117,20 @@ def _beside(
     promise = next(iter(promises.beside(hypothesis.causes, scales)), None)
     if promise is None:
         return None
-    cause = _linearised(search, hypothesis, promise, promises.traces[promise.name], mask)
-    if cause is None:
+    candidate = fits.candidate(promise, hypothesis)
+    if candidate is None:
         return None
-    candidate = Candidate(promise.effect, promise.location, (cause,))
     fitted = search.fits.fit((*hypothesis.candidates, candidate), hypothesis.scales)
     place = len(fitted.causes) - 1
     tried = len(search.count) * search.count[promise.effect] * len(evidence.references)
     chance = float(np.log(search.rules.cause.changed / tried))
     together = fitted.log_evidence + hypothesis.log_prior + chance
     log = evidence.references[number].log.name
+    cause = fitted.causes[place]
     return Difference(number, log, cause, fitted.values(place), fitted.deviation(place), together)
 
 
-def _traces_in(search: Search, mask: np.ndarray) -> dict[Name, screen.Traces]:
+def _traces_in(search: Search, only: np.ndarray) -> dict[Name, screen.Traces]:
     """Effects that act in one log alone, where this log shows them."""
     evidence = search.evidence
     traces: dict[Name, screen.Traces] = {}
@@ -141,45 +140,13 @@ def _traces_in(search: Search, mask: np.ndarray) -> dict[Name, screen.Traces]:
             continue
         own: screen.Traces
         if isinstance(traced, list):
-            own = [_cut(evidence, cause, mask) for cause in traced if not cause.factors]
+            own = [evidence.acting(c, False, only) for c in traced if not c.factors]
             shown = [cause.columns for cause in own]
         elif isinstance(traced, screen.Starts) and not (weighed.scales or weighed.holds_back):
-            own = cut = replace(traced, columns=traced.columns * mask)
+            own = cut = replace(traced, columns=traced.columns * only)
             shown = [cut.traces]
         else:
             continue
         if any(screen.reach(evidence.samples, columns) >= screen.SHOWN for columns in shown):
             traces[effect, location, False] = own
     return traces
-
-
-def _cut(evidence: Evidence, cause: Cause, mask: np.ndarray) -> Cause:
-    """A cause in one log alone."""
-    constant = cause.constant * mask if len(cause.constant) else cause.constant
-    cut = replace(cause, columns=cause.columns * mask, constant=constant, factors=())
-    return evidence.acting(cut, False)
-
-
-def _linearised(
-    search: Search,
-    hypothesis: Hypothesis,
-    promise: Promise,
-    traced: screen.Traces,
-    mask: np.ndarray,
-) -> Cause | None:
-    """An effect in one log, linearised where it fits best beside a hypothesis."""
-    if isinstance(traced, list):
-        return traced[promise.variant]
-    evidence, effect = search.evidence, WEIGHED[promise.effect]
-    scales = eased(evidence, hypothesis.scales, search.rules)
-    values, cause = np.array(promise.values), None
-    for _ in range(search.rules.search.steps):
-        linear = screen.linearise(evidence.samples, effect, promise.location, values)
-        if linear is None:
-            break
-        cause = _cut(evidence, linear, mask)
-        stack = Stack.of((*hypothesis.causes, cause), evidence.weight)
-        crossing = Crossing.of(evidence.channels, stack.rows)
-        sizes = search.fits.at_scales(stack, crossing, scales).theta[-len(cause.nulls) :]
-        values = np.clip(cause.nulls + sizes * cause.usual, cause.low, cause.high)
-    return cause

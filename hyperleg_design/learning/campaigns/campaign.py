@@ -85,7 +85,7 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
     if not isinstance(groups, list) or not groups:
         raise InputError(where, "groups", groups, "expects a list of groups")
     runs: list[tuple[int, int, int, Run]] = []
-    names = set()
+    names, designs = set(), set()
     for g, group in enumerate(groups):
         check_keys(
             checked_mapping(group, where, f"groups.{g}"),
@@ -118,8 +118,10 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
                 where, f"groups.{g}.designs", group["designs"], "expects a list of designs"
             )
         for d, design in enumerate(group["designs"]):
-            with resources.named_in(where, f"groups.{g}.designs"):
-                load_robot(str(design))
+            if str(design) not in designs:
+                with resources.named_in(where, f"groups.{g}.designs"):
+                    load_robot(str(design))
+                designs.add(str(design))
             for seed in range(
                 checked_whole_number(group["seeds"], where, f"groups.{g}.seeds", 1, 1000)
             ):

@@ -51,6 +51,7 @@ def _hyperleg(design: Design) -> Tree:
     """The tree of a pelvis and two mirrored legs."""
     links: list[Link] = []
     joints: list[TreeJoint] = []
+    actuation = _actuation(design)
     for side in SIDES:
         sign = SIGN[side]
         links_of_leg = inertials(design, sign)
@@ -71,15 +72,28 @@ def _hyperleg(design: Design) -> Tree:
                     _pads(design, name),
                 )
             )
-        joints += _leg_joints(design, side, sign)
+        joints += _leg_joints(design, side, sign, actuation)
     return Tree(design.name, tuple(links), tuple(joints))
 
 
-def _leg_joints(design: Design, side: str, sign: float) -> list[TreeJoint]:
+def _actuation(design: Design) -> tuple[np.ndarray, ...]:
+    """Coulomb friction [Nm], viscous friction [Nms/rad], largest torque [Nm] and speed [rad/s] of
+    the joints of a leg, each `(7,)`.
+    """
+    posture = str(design.transmission.posture)
+    return (
+        *joint_friction(design),
+        transmission.max_joint_torque(design, posture),
+        transmission.single_joint_speed(design, posture),
+    )
+
+
+def _leg_joints(
+    design: Design, side: str, sign: float, actuation: tuple[np.ndarray, ...]
+) -> list[TreeJoint]:
+    """The joints of one leg; `actuation` is that of either leg (`_actuation`)."""
     moving = transmission.joint_names(design)
-    coulomb, viscous = joint_friction(design)
-    effort = transmission.max_joint_torque(design, str(design.transmission.posture))
-    speed = transmission.single_joint_speed(design, str(design.transmission.posture))
+    coulomb, viscous, effort, speed = actuation
     positions = {
         "hip_yaw": (0.0, sign * design.hip.spacing / 2, 0.0),
         "knee": (0.0, 0.0, -design.thigh.length),
