@@ -28,6 +28,8 @@ study: $(VENV)/.installed  ## Analyse the paper's biped and its ablations, sweep
 # two processes of tests are enough for two cores: linear algebra with threads of its own gets in their way
 test test-all: export OMP_NUM_THREADS = 1
 test test-all: export OPENBLAS_NUM_THREADS = 1
+# without its compiled modules every process that a test starts compiles the package again
+test test-all study: export PYTHONDONTWRITEBYTECODE =
 
 test: $(VENV)/.learning  ## All tests but the slow ones, style and types
 	$(BIN)/ruff check .

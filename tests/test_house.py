@@ -62,13 +62,18 @@ def is_for_types(node: ast.AST) -> bool:
     return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
 
 
-def imports(module: str, *, types: bool) -> Iterator[str]:
+@cache
+def imports(module: str, *, types: bool) -> tuple[str, ...]:
     """Modules of the package that a module imports anywhere, functions included.
 
     Args:
         module: its dotted name.
         types: whether imports for annotations alone count.
     """
+    return tuple(imported(module, types))
+
+
+def imported(module: str, types: bool) -> Iterator[str]:
     package = module if MODULES[module].name == "__init__.py" else module.rpartition(".")[0]
     pending: list[ast.AST] = [syntax(module)]
     while pending:
@@ -134,6 +139,17 @@ def test_rooms_of_the_package_import_only_rooms_before_them():
             ROOMS.index(other) > ROOMS.index(room)
             or (room in WITHOUT_LEARNING and other == "learning")
         )
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_modules_in_no_room_import_none():
+    wrong = [
+        f"{module} imports {target}"
+        for module, path in MODULES.items()
+        if path.parent == PACKAGE and path.stem not in ("__init__", *ROOMS)
+        for target in imports(module, types=True)
+        if room_of(target, 1) in ROOMS
     ]
     assert not wrong, "\n".join(wrong)
 

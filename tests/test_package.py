@@ -1,6 +1,4 @@
-"""The package as a whole: what an import costs, which room knows which, that everything says what
-it is.
-"""
+"""The package as a whole: what an import costs, and that everything says what it is."""
 
 from __future__ import annotations
 
@@ -29,21 +27,6 @@ HEAVY = (
     "yourdfpy",
     "lxml",
 )
-ROOMS = (
-    "robot",
-    "sizing",
-    "simulation",
-    "learning",
-    "evaluation",
-    "gap",
-    "validation",
-    "sweep",
-    "report",
-    "cli",
-)
-"""In order: a room imports only rooms before it."""
-APART = {room: {"learning"} for room in ("evaluation", "gap", "validation", "sweep")}
-"""Rooms that a room must not know though they come before it."""
 
 
 def name_of(path: Path) -> str:
@@ -100,31 +83,6 @@ def test_a_public_docstring_names_arguments_and_result(name):
         assert f"\n    {parameter}: " in text, f"does not say what {parameter} is"
     assert "Returns:" in text
     assert signature.return_annotation is not inspect.Signature.empty
-
-
-def imported_rooms(path: Path) -> set[str]:
-    """First parts below the package of everything that a module imports, wherever in the module it
-    does.
-    """
-    found = set()
-    for node in ast.walk(ast.parse(path.read_text())):
-        names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
-        if isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{name_of(path)} imports relative to itself"
-            names = [f"{node.module}.{a.name}" for a in node.names]
-        found |= {n.split(".")[1] for n in names if n.startswith("hyperleg_design.")}
-    return found
-
-
-@pytest.mark.parametrize("path", MODULES, ids=name_of)
-def test_a_room_knows_only_the_rooms_before_it(path):
-    own = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
-    known = imported_rooms(path) & set(ROOMS)
-    if path.parent == PACKAGE and own not in ROOMS:
-        allowed = set(ROOMS) if own == "__init__" else set()
-    else:
-        allowed = set(ROOMS[: ROOMS.index(own) + 1]) - APART.get(own, set())
-    assert known <= allowed, f"{name_of(path)} imports {sorted(known - allowed)}"
 
 
 @pytest.mark.parametrize("path", MODULES, ids=name_of)

@@ -8,7 +8,8 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from functools import cache
 from pathlib import Path
 
 import hyperleg_design
@@ -43,8 +44,15 @@ def package_of(path: Path) -> str:
     return path.relative_to(PACKAGE).parts[0]
 
 
-def bound_names(tree: ast.AST) -> Iterator[str]:
-    for node in ast.walk(tree):
+@cache
+def modules() -> dict[Path, tuple[ast.AST, ...]]:
+    """All nodes of the syntax of each module."""
+    paths = sorted(PACKAGE.rglob("*.py"))
+    return {path: tuple(ast.walk(ast.parse(path.read_text()))) for path in paths}
+
+
+def bound_names(nodes: Iterable[ast.AST]) -> Iterator[str]:
+    for node in nodes:
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
             yield node.id
         elif isinstance(node, ast.arg):
@@ -53,8 +61,8 @@ def bound_names(tree: ast.AST) -> Iterator[str]:
             yield node.name
 
 
-def short_docstrings(tree: ast.AST) -> Iterator[str]:
-    for node in ast.walk(tree):
+def short_docstrings(nodes: Iterable[ast.AST]) -> Iterator[str]:
+    for node in nodes:
         if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
             text = ast.get_docstring(node)
             if text and len(text.split("\n\n")[0].split()) < FEWEST_WORDS:
@@ -69,9 +77,9 @@ def described(node: ast.FunctionDef) -> set[str]:
     return {name.strip() for line in lines for name in line.split(",")}
 
 
-def undescribed(tree: ast.AST) -> Iterator[str]:
+def undescribed(nodes: Iterable[ast.AST]) -> Iterator[str]:
     """Public functions with arguments that their docstrings do not describe under `Args`."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if not isinstance(node, ast.FunctionDef) or node.name.startswith("_"):
             continue
         decorators = {ast.unparse(one).split("(")[0].split(".")[-1] for one in node.decorator_list}
@@ -84,8 +92,8 @@ def undescribed(tree: ast.AST) -> Iterator[str]:
 
 
 def test_docstrings_describe_no_argument_that_is_not_there():
-    for path in PACKAGE.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
+    for path, nodes in modules().items():
+        for node in nodes:
             if isinstance(node, ast.FunctionDef):
                 names = {one.arg for one in ast.walk(node.args) if isinstance(one, ast.arg)}
                 assert described(node) <= names, f"{path.name}: {node.name}"
@@ -94,8 +102,8 @@ def test_docstrings_describe_no_argument_that_is_not_there():
 def test_barred_names_become_fewer():
     counts = Counter(
         package_of(path)
-        for path in PACKAGE.rglob("*.py")
-        for name in bound_names(ast.parse(path.read_text()))
+        for path, nodes in modules().items()
+        for name in bound_names(nodes)
         if name in BARRED
     )
     more = {p: n for p, n in counts.items() if n > NAMES_ALLOWED.get(p, 0)}
@@ -104,8 +112,8 @@ def test_barred_names_become_fewer():
 
 def test_public_docstrings_are_sentences():
     short: dict[str, list[str]] = {}
-    for path in PACKAGE.rglob("*.py"):
-        names = [f"{path.stem}.{name}" for name in short_docstrings(ast.parse(path.read_text()))]
+    for path, nodes in modules().items():
+        names = [f"{path.stem}.{name}" for name in short_docstrings(nodes)]
         short[package_of(path)] = short.get(package_of(path), []) + names
     more = {p: names for p, names in short.items() if len(names) > DOCSTRINGS_ALLOWED.get(p, 0)}
     assert not more, f"say what these compute: {more}"
@@ -113,15 +121,15 @@ def test_public_docstrings_are_sentences():
 
 def test_public_docstrings_describe_their_arguments():
     missing: dict[str, list[str]] = {}
-    for path in PACKAGE.rglob("*.py"):
-        names = [f"{path.stem}.{name}" for name in undescribed(ast.parse(path.read_text()))]
+    for path, nodes in modules().items():
+        names = [f"{path.stem}.{name}" for name in undescribed(nodes)]
         missing[package_of(path)] = missing.get(package_of(path), []) + names
     more = {p: n for p, n in missing.items() if len(n) > ARGUMENTS_ALLOWED.get(p, 0)}
     assert not more, f"describe the arguments of these: {more}"
 
 
 def test_all_kinds_are_seen():
-    tree = ast.parse('def mass(found):\n    """[kg]"""\n    told = found\n')
-    assert BARRED & set(bound_names(tree)) == {"found", "told"}
-    assert list(short_docstrings(tree)) == ["mass"]
-    assert list(undescribed(tree)) == ["mass"]
+    nodes = list(ast.walk(ast.parse('def mass(found):\n    """[kg]"""\n    told = found\n')))
+    assert BARRED & set(bound_names(nodes)) == {"found", "told"}
+    assert list(short_docstrings(nodes)) == ["mass"]
+    assert list(undescribed(nodes)) == ["mass"]
