@@ -129,7 +129,8 @@ def force_lines(analysis: Mapping[str, Any]) -> list[str]:
     """
     forces, limb = analysis["contact_force"], _limb(analysis)
     lines = [
-        f"largest {direction} force of {limb}, default posture: {force['force']:.4g} N, "
+        f"largest {direction} force of {limb}, default posture, other components free: "
+        f"{force['force']:.4g} N, "
         f"{force['body_weights']:.3g} body weights; at their limit: "
         f"{', '.join(force['binding']) or 'no motor, the floor slips'}"
         for direction, force in forces.items()

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.robot import description, transmission
-from hyperleg_design.robot.kinematics.dimensions import standing_height
+from hyperleg_design.robot.kinematics.dimensions import zero_height
 from hyperleg_design.robot.kinematics.tree import Tree, build_tree
 from hyperleg_design.robot.laws.gear import rotor_inertia
 from hyperleg_design.robot.motors import motor_arrays
@@ -65,7 +65,7 @@ def mujoco_spec(design: RobotDesign, *, friction: bool = True, floor: bool = Tru
     base = spec.body(tree.base)
     if tree.floating:
         base.add_freejoint(name=BASE_JOINT)
-    base.pos = [0.0, 0.0, float(standing_height(design))]
+    base.pos = [0.0, 0.0, float(zero_height(design))]
     _dress_geoms(spec, design, tree)
     for joint in tree.moving:
         hinge = spec.joint(joint.name)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.robot import description, transmission
-from hyperleg_design.robot.kinematics.dimensions import standing_height
+from hyperleg_design.robot.kinematics.dimensions import zero_height
 from hyperleg_design.robot.kinematics.kinematic_tree import Tree
 from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.laws.gear import rotor_inertia
@@ -138,7 +138,7 @@ class RigidBodyModel:
 
         q = np.array(pin.neutral(self.model))
         if self.floating:
-            q[2] = float(standing_height(self.design))
+            q[2] = float(zero_height(self.design))
         return q
 
     def to_mujoco(

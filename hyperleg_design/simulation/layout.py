@@ -14,7 +14,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.kinematics.dimensions import standing_height, total_mass
+from hyperleg_design.robot.kinematics.dimensions import total_mass
 from hyperleg_design.robot.kinematics.posture import default_angles, link_poses, lowest_point
 from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.parameters.described import prefixed
@@ -51,9 +51,6 @@ class Layout:
     """Upper ends of the ranges of motion [rad], `(J,)`."""
     weight: Any
     """m g [N]; of a batch `(n,)`."""
-    standing_height: Any
-    """Base's origin above the floor in the zero posture [m], of HyperLeg the hip-pitch axis; of a
-    batch `(n,)`."""
     default_height: Any
     """Base's origin above the floor in the default posture [m]; of a batch `(n,)`."""
     limbs: tuple[str, ...] = ("left", "right")
@@ -143,7 +140,6 @@ _NUMBERS = (
     "lower",
     "upper",
     "weight",
-    "standing_height",
     "default_height",
     "observed",
 )
@@ -189,7 +185,6 @@ def layout_of(design: RobotDesign) -> Layout:
         lower=np.array([joint.lower for joint in tree.moving]),
         upper=np.array([joint.upper for joint in tree.moving]),
         weight=float(total_mass(design)) * GRAVITY,
-        standing_height=float(standing_height(design)),
         default_height=_default_height(tree),
         limbs=tuple(design.copies),
         feet=feet,

@@ -40,7 +40,8 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
         `link_inertia` [kg m^2] (of what is behind each joint, about it, rotors not in it),
         `zonotope_to_box_volume` [-], `motors`, `linkages` (for each motor with a rod `reduction`,
         its smallest and largest by joint, `default` and `beyond`, as `RodRange` has them), and
-        `contact_force` by direction: `force` [N],
+        `contact_force` by direction: `force` [N] (the largest component of one limb's force on the
+        floor that way; the other components are whatever they must be),
         `body_weights` [-] and `binding` motors, or the `reason` why there is none.
 
     Raises:

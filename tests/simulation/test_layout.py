@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.kinematics.dimensions import zero_height
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.layout import GRAVITY, layout_of
 
@@ -55,6 +56,7 @@ def test_a_quadrupeds_diagonal_feet_step_together() -> None:
 
 
 def test_heights_of_the_two_postures() -> None:
-    layout = layout_of(load_design("toe"))
+    design = load_design("toe")
+    layout = layout_of(design)
     assert layout.feet == ("left_foot", "right_foot")
-    assert 0.9 * layout.standing_height < layout.default_height <= layout.standing_height
+    assert 0.9 * zero_height(design) < layout.default_height <= zero_height(design)

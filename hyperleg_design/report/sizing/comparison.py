@@ -225,7 +225,7 @@ def _tree_entry(design: TreeDesign, whole: Mapping[str, Any], demand: bool) -> d
     return {
         **{k: whole[k] for k in (*same, "zonotope_to_box_volume")},
         "leg_mass": whole["limb_mass"] if whole["limbs"] else "",
-        "leg_length": "" if whole["standing_height"] is None else whole["standing_height"],
+        "standing_height": "" if whole["standing_height"] is None else whole["standing_height"],
         "contact_force": {
             k: v["force"] if v["force"] is not None else "" for k, v in forces.items()
         },
@@ -316,6 +316,7 @@ UNITS = {
     "total_mass": "kg",
     "leg_mass": "kg",
     "leg_length": "m",
+    "standing_height": "m",
     "height": "m",
     "max_joint_torque": "Nm",
     "single_joint_speed": "rad/s",
@@ -331,6 +332,10 @@ UNITS = {
 
 JOINTWISE = ("max_joint_torque", "torque_alone", "single_joint_speed")
 """Measures of `compare` with a number for each joint."""
+TORQUES_NOTE = (
+    "max_joint_torque: derated, whatever the other joints do; torque_alone: the others at zero "
+    "torque, not derated"
+)
 
 
 def compare_text(measures: dict[str, Any]) -> str:
@@ -360,6 +365,7 @@ def compare_text(measures: dict[str, Any]) -> str:
     groups = list(dict.fromkeys(key.split(".")[0] for key in rows))
     ordered = sorted(rows, key=lambda key: groups.index(key.split(".")[0]))
     text = table(["measure", "unit", *measures], [[key, _unit(key), *rows[key]] for key in ordered])
+    text = f"{text}\n{TORQUES_NOTE}"
     if not others:
         return text
     heads = ["joint", "design", *(f"{group} [{UNITS[group]}]" for group in JOINTWISE)]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
+import numpy as np
+
 from hyperleg_design.robot import masses
 from hyperleg_design.robot.checks.consistency import leg_length
 from hyperleg_design.robot.trees import limb_masses, tree_limb
@@ -42,7 +44,7 @@ def limb_mass(design: RobotDesign) -> Any:
     return masses.mass_table(cast("Design", design)).leg
 
 
-def standing_height(design: RobotDesign) -> Any:
+def zero_height(design: RobotDesign) -> Any:
     """Compute the height of the base's origin above the floor in the zero posture.
 
     Args:
@@ -54,3 +56,15 @@ def standing_height(design: RobotDesign) -> Any:
     if isinstance(design, TreeDesign):
         return tree_limb.standing_height(design)
     return leg_length(cast("Design", design))
+
+
+def standing_height(design: TreeDesign) -> np.ndarray:
+    """Compute the height of the base's origin above the floor in the default posture.
+
+    Args:
+        design: a robot or batch that writes its tree out.
+
+    Returns:
+        The height [m], `(...)`.
+    """
+    return tree_limb.standing_height(design, tree_limb.default_position(design))

@@ -193,18 +193,20 @@ def pad_radius(design: TreeDesign, pad: Any) -> Any:
     return np.where(np.asarray(pad.radius) > 0, pad.radius, design.contact.pad_radius)
 
 
-def standing_height(design: TreeDesign) -> np.ndarray:
-    """Compute the height of the root link's origin above the floor in the zero posture.
+def standing_height(design: TreeDesign, position: np.ndarray | None = None) -> np.ndarray:
+    """Compute the height of the root link's origin above the floor where the lowest pad stands on
+    it.
 
     Args:
         design: a robot or batch.
+        position: joint angles of each limb [rad], `(..., joints)`; zero by default.
 
     Returns:
         The height [m], `(...)`.
     """
     if design.trunk.motion == "fixed" or not design.pad_sections:
         return np.asarray(design.trunk.height, float)
-    drop = -pad_points(design)[..., 2].min(-1)
+    drop = -pad_points(design, position)[..., 2].min(-1)
     lowest = [
         -np.asarray(copy.position, float)[..., 2] + drop for copy in design.copy_sections.values()
     ]

@@ -93,7 +93,7 @@ def test_designs_are_walked_by_the_policies_of_their_toe_layout(monkeypatch):
         assert entry["fell"]["low"] <= entry["fell"]["mean"] <= entry["fell"]["high"]
 
 
-def test_a_robot_described_as_a_whole_has_no_mass_of_a_leg_and_without_pads_no_length():
+def test_a_robot_described_as_a_whole_has_no_mass_of_a_leg_and_without_pads_no_height():
     whole = leg(pads={}, trunk={"link": "base", "motion": "floating"})
     (entry,) = comparison.compare([whole]).values()
-    assert (entry["leg_mass"], entry["leg_length"]) == ("", "")
+    assert (entry["leg_mass"], entry["standing_height"]) == ("", "")

@@ -8,7 +8,7 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.report.viewer.sliders import changed, parameters_of
 from hyperleg_design.robot import transmission
-from hyperleg_design.robot.kinematics.dimensions import limb_mass, standing_height, total_mass
+from hyperleg_design.robot.kinematics.dimensions import limb_mass, total_mass, zero_height
 from hyperleg_design.robot.load import load_robot
 
 
@@ -37,7 +37,7 @@ def test_a_mass_slider_adds_to_both_legs():
 def test_the_length_of_a_link_of_a_written_out_tree_lifts_the_robot():
     design = load_robot("mini_cheetah")
     taller = changed(design, parameters_of(design), {"length of shank": 1.5})
-    assert standing_height(taller) - standing_height(design) == pytest.approx(0.5 * 0.195, abs=1e-9)
+    assert zero_height(taller) - zero_height(design) == pytest.approx(0.5 * 0.195, abs=1e-9)
 
 
 def test_a_reduction_slider_scales_the_torque_map():

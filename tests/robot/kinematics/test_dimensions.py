@@ -5,7 +5,12 @@ from __future__ import annotations
 import mujoco
 import pytest
 
-from hyperleg_design.robot.kinematics.dimensions import limb_mass, standing_height, total_mass
+from hyperleg_design.robot.kinematics.dimensions import (
+    limb_mass,
+    standing_height,
+    total_mass,
+    zero_height,
+)
 from hyperleg_design.robot.kinematics.posture import default_angles
 from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.load import load_robot
@@ -39,9 +44,16 @@ def test_the_robot_stands_on_its_pads(design):
         assert lowest == pytest.approx(0, abs=1e-9)
         zero = mujoco.MjData(model)
         mujoco.mj_kinematics(model, zero)
-        assert model.body_pos[1, 2] == pytest.approx(float(standing_height(design)))
+        assert model.body_pos[1, 2] == pytest.approx(float(zero_height(design)))
     assert model.qpos_spring.shape
     tree = build_tree(design)
     assert dict(
         zip([j.name for j in tree.moving], data.qpos[-len(tree.moving) :], strict=True)
     ) == pytest.approx(default_angles(tree))
+
+
+def test_the_height_of_a_tree_is_that_of_its_default_posture():
+    design = load_robot("mini_cheetah")
+    model = mujoco_model(design)
+    assert standing_height(design) == pytest.approx(model.key_qpos[0, 2], abs=1e-9)
+    assert standing_height(design) < zero_height(design) - 0.1
