@@ -37,8 +37,8 @@ TOLD_APART = {
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch):
-    monkeypatch.setattr(module, "DURATION", 6.0)
-    monkeypatch.setattr(module, "STANDING", 3.0)
+    monkeypatch.setattr(module, "DURATION", 4.0)
+    monkeypatch.setattr(module, "STANDING", 2.0)
 
 
 @pytest.mark.parametrize("name", EFFECTS)
