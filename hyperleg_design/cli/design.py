@@ -136,7 +136,7 @@ class Import(Printing):
         """Import the file, and print where its limits contradict the motors."""
         from hyperleg_design.robot.build import design_yaml
         from hyperleg_design.robot.checks.finding import finding_lines
-        from hyperleg_design.robot.importing import import_robot
+        from hyperleg_design.robot.importing import base_line, import_robot
         from hyperleg_design.writing import write_text
 
         design, findings = import_robot(self.file, self.actuation, meshes=not self.no_meshes)
@@ -147,6 +147,7 @@ class Import(Printing):
                 {
                     "design": design.name,
                     "file": None if self.out is None else str(self.out),
+                    "trunk": {"link": design.trunk.link, "motion": design.trunk.motion},
                     "joints": list(design.joint_sections),
                     "findings": [vars(finding) for finding in findings],
                 }
@@ -154,6 +155,7 @@ class Import(Printing):
             return
         written = "" if self.out is None else f" -> {self.out}"
         print(f"{design.name}: {len(design.joint_sections)} joints{written}")
+        print(base_line(design))
         for line in finding_lines(findings):
             print(line)
         if not findings:

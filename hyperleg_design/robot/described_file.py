@@ -20,6 +20,8 @@ MOST_RADIANS = 4 * math.pi + 1e-6
 LARGEST_STEP = 5.0
 """Distance between joints past which it is taken for millimetres [m]."""
 MOVING = ("revolute", "continuous")
+WORLD = "world"
+"""Root link by which a URDF says that its robot is fixed to the ground."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,7 +146,8 @@ def _urdf(path: Path, root: Any, where: str, meshes: bool) -> FileRobot:
             del joints[name], links[joint.parent]  # the world, from which the robot is free
     carried = {joint.child for joint in joints.values()}
     (base,) = [name for name in links if name not in carried]
-    return FileRobot(fit_name(root.get("name", "robot")), where, base, True, links, joints)
+    floating = base != WORLD
+    return FileRobot(fit_name(root.get("name", "robot")), where, base, floating, links, joints)
 
 
 def _require_mesh(name: str, path: Path, where: str) -> None:

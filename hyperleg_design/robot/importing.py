@@ -82,6 +82,24 @@ def import_robot(
     return design, [*lint(robot, design), *check_housing(design)]
 
 
+def base_line(design: TreeDesign) -> str:
+    """Write whether the root link of an imported robot moves, and what in the actuation file would
+    change it.
+
+    Args:
+        design: the imported robot.
+
+    Returns:
+        One line.
+    """
+    motion = str(design.trunk.motion)
+    other = "fixed" if motion == "floating" else "floating"
+    return (
+        f"the root link {design.trunk.link} is {motion}; trunk: {{motion: {other}}} in the "
+        f"actuation file makes it {other}"
+    )
+
+
 def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dict[str, Any]:
     """Write what the file of the imported design would hold.
 

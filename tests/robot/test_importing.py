@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -235,6 +236,18 @@ def test_a_floating_joint_from_the_world_is_a_free_base(tmp_path):
     assert list(design.link_sections) == ["body", "shank", "tip"]
     (pad,) = design.pad_sections.values()
     assert (pad.link, list(pad.position), pad.radius) == ("tip", [0.0, 0.0, -0.1], 0.02)
+
+
+def test_a_root_named_world_is_a_fixed_base(tmp_path, capsys):
+    path, out = tmp_path / "arm.urdf", tmp_path / "arm.yaml"
+    path.write_text(two_feet().replace('type="floating"', 'type="fixed"'))
+    motors = actuation(tmp_path / "m.yaml", actuators={"knee": {"motor": "RI60", "gear": 9}})
+    assert main(["import", str(path), "--actuation", str(motors), "--out", str(out)]) == 0
+    assert "root link world is fixed; trunk: {motion: floating}" in capsys.readouterr().out
+    model = mujoco.MjModel.from_xml_string(mjcf(load_robot(out)))
+    assert model.nq == 1
+    path.write_text(path.read_text().replace('"world"', '"ground"'))
+    assert import_robot(path, motors)[0].trunk.motion == "floating"
 
 
 def test_pads_of_links_without_spheres(tmp_path):

@@ -13,7 +13,6 @@ from hyperleg_design.robot import transmission
 from hyperleg_design.robot.kinematics.posture import axis_rotation, link_poses, lowest_point
 from hyperleg_design.robot.kinematics.tree import SIGN, Tree, build_tree
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, MOTORS, SIDES
-from hyperleg_design.robot.parameters.described import prefixed
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
@@ -211,13 +210,14 @@ def _tree_motor_solids(
 ) -> Iterator[tuple[str, Solid]]:
     """Motors of a robot that writes its tree out as discs of their mass, each with its link."""
     from hyperleg_design.robot.motors import find_motor
+    from hyperleg_design.robot.trees.tree_build import model_link
     from hyperleg_design.robot.trees.tree_limb import copied
 
     colours = tuple(dict.fromkeys(MOTOR_COLOUR.values()))
     for copy, section in design.copy_sections.items():
         for index, actuator in enumerate(design.actuator_sections.values()):
             in_root = actuator.housed_in == design.trunk.link
-            link = tree.base if in_root else prefixed(copy, str(actuator.housed_in))
+            link = tree.base if in_root else model_link(copy, str(actuator.housed_in))
             place = copied(section, np.asarray(actuator.place, float), move=in_root)
             radius = _motor_radius(find_motor(str(actuator.motor)).mass)
             yield (

@@ -16,6 +16,9 @@ from hyperleg_design.robot.trees.tree_design import TreeDesign
 MIRROR = np.array([1.0, -1.0, 1.0])
 """Mirrors positions in the plane y = 0; axes and turns, which are pseudovectors, take its
 opposite."""
+WORLD, ROOT = "world", "world_link"
+"""A link that MuJoCo would take for its world, which neither moves nor carries joints, and the name
+that it gets in models."""
 
 
 def tree_of(design: TreeDesign) -> Tree:
@@ -29,15 +32,17 @@ def tree_of(design: TreeDesign) -> Tree:
     Returns:
         The tree.
     """
-    root = str(design.trunk.link)
+    own, root = str(design.trunk.link), model_link("", str(design.trunk.link))
     masses = limb_masses.limb_masses(design).links
-    links = [_link(design, root, root, masses[root], mirror=False)]
+    links = [_link(design, root, own, masses[own], mirror=False)]
     joints: list[TreeJoint] = []
     for copy, section in design.copy_sections.items():
         mirror = bool(section.mirror)
         for name in design.link_sections:
-            if name != root:
-                links.append(_link(design, prefixed(copy, name), name, masses[name], mirror=mirror))
+            if name != own:
+                links.append(
+                    _link(design, model_link(copy, name), name, masses[name], mirror=mirror)
+                )
         joints += _joints(design, copy, np.asarray(section.position, float), mirror)
     order = {joint.child: index for index, joint in enumerate(joints, 1)}
     links.sort(key=lambda link: order.get(link.name, 0))
@@ -51,6 +56,20 @@ def tree_of(design: TreeDesign) -> Tree:
         limbs=design.copies,
         hyperleg=False,
     )
+
+
+def model_link(copy: str, link: str) -> str:
+    """Name a link of a limb as trees and models do.
+
+    Args:
+        copy: name of the limb, empty for the root link and where limbs are not copied.
+        link: its name in the design.
+
+    Returns:
+        The name, which is never `WORLD`.
+    """
+    name = prefixed(copy, link)
+    return ROOT if name == WORLD else name
 
 
 def _link(design: TreeDesign, name: str, own: str, body: Any, *, mirror: bool) -> Link:
@@ -96,8 +115,8 @@ def _joints(design: TreeDesign, copy: str, place: np.ndarray, mirror: bool) -> l
         joints.append(
             TreeJoint(
                 name=prefixed(copy, name),
-                parent=root if joint.parent == root else prefixed(copy, joint.parent),
-                child=prefixed(copy, joint.child),
+                parent=model_link("" if joint.parent == root else copy, str(joint.parent)),
+                child=model_link(copy, str(joint.child)),
                 position=_three(at),
                 axis=_three(np.asarray(joint.axis, float) * signs * np.prod(signs)),
                 fixed=index is None,

@@ -17,7 +17,7 @@ from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.mjcf import mjcf, mujoco_model
 from hyperleg_design.robot.models import quaternion_matrix, rigid_body_model
-from tests.robot.tree_files import SHIPPED
+from tests.robot.tree_files import SHIPPED, leg
 
 
 @pytest.fixture(scope="module", params=SHIPPED)
@@ -105,3 +105,19 @@ def test_every_value_is_labelled_and_has_a_source(design):
     for path, origin in design.origins.items():
         assert origin.label in ("paper", "vendor", "derived", "assumed"), path
         assert origin.source, path
+
+
+@pytest.mark.parametrize("motion", ["fixed", "floating"])
+def test_a_root_named_world_is_a_body_of_its_own_in_mujoco(motion):
+    links = {n: {"mass": 1.0, "gyration": [0.1] * 3} for n in ("world", "thigh", "shank")}
+    joints = {
+        "hip": {"parent": "world", "child": "thigh"},
+        "knee": {"parent": "thigh", "child": "shank", "position": [0, 0, -0.2]},
+    }
+    motors = {n: {"motor": "RI70", "gear": 7, "housed_in": "world"} for n in joints}
+    trunk = {"link": "world", "motion": motion, "height": 0.5}
+    design = leg(trunk=trunk, links=links, joints=joints, actuators=motors)
+    model = mujoco_model(design)
+    assert model.nv == 2 + 6 * (motion == "floating")
+    assert model.body("world_link").mass == pytest.approx(1.0)
+    assert rigid_body_model(design).model.existBodyName("world_link")
