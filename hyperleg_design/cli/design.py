@@ -128,20 +128,18 @@ class Import(Printing):
     actuation: Path
     """YAML file that names motors and reductions; docs/robots.md says how."""
     out: Path | None = None
-    """Design file to write; without it, the limits are only checked."""
+    """Design file to write, new or of an earlier import; without it, limits are only checked."""
     no_meshes: bool = False
     """Import although meshes are missing that the file names."""
 
     def run(self) -> None:
         """Import the file, and print where its limits contradict the motors."""
-        from hyperleg_design.robot.build import design_yaml
         from hyperleg_design.robot.checks.finding import finding_lines
-        from hyperleg_design.robot.importing import base_line, import_robot
-        from hyperleg_design.writing import write_text
+        from hyperleg_design.robot.importing import base_line, import_robot, write_imported
 
         design, findings = import_robot(self.file, self.actuation, meshes=not self.no_meshes)
         if self.out is not None:
-            write_text(self.out, design_yaml(design))
+            write_imported(design, self.out)
         if self.json:
             emit(
                 {

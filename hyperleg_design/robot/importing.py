@@ -21,9 +21,10 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import transmission
+from hyperleg_design.robot.build import design_yaml
 from hyperleg_design.robot.checks.check_housing import check_housing
 from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.described_file import FileJoint, FileRobot, read_robot
@@ -34,12 +35,15 @@ from hyperleg_design.robot.parameters.entries import check_keys
 from hyperleg_design.robot.parameters.motor_paths import with_motor_paths
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_load import tree_design_from_mapping
+from hyperleg_design.writing import write_text
 
 DUMMY_INERTIA = 1e-5
 """Moment of inertia up to which a link is a placeholder, as root links of URDFs often are, and gets
 the moments of a ball where it has those of no body [kg m^2]."""
 AGREES = 0.05
 """Relative difference up to which a limit of the file agrees with the motors [-]."""
+HEAD = "# Written by `hyperleg import`, which replaces this file.\n"
+"""First line of a design that import writes: it replaces no other file."""
 KEYS = (
     "name",
     "trunk",
@@ -80,6 +84,28 @@ def import_robot(
     data, where = with_motor_paths(read_yaml(motors), motors.parent), short_name(motors)
     design = tree_design_from_mapping(design_mapping(robot, data, where), robot.name, where)
     return design, [*lint(robot, design), *check_housing(design)]
+
+
+def write_imported(design: TreeDesign, out: str | Path) -> Path:
+    """Write the file of an imported design.
+
+    Args:
+        design: the design.
+        out: a new file, or one that this function wrote.
+
+    Returns:
+        The file.
+
+    Raises:
+        OutputError: another file stands there, such as one that was imported; it is untouched.
+    """
+    out = Path(out)
+    if out.is_file() and not out.read_bytes().startswith(HEAD.encode()):
+        raise OutputError(
+            f"{out}: is a file that hyperleg import did not write; choose another --out, or remove "
+            f"it first"
+        )
+    return write_text(out, HEAD + design_yaml(design))
 
 
 def base_line(design: TreeDesign) -> str:

@@ -212,6 +212,22 @@ def test_the_command_writes_a_design_that_loads(tmp_path, capsys):
     assert list(load_robot(out).joint_sections) == ["hip", "knee"]
 
 
+def test_only_a_file_that_import_wrote_is_replaced(tmp_path, capsys):
+    path, out = tmp_path / "leg.urdf", tmp_path / "mine.yaml"
+    path.write_text(urdf(leg()))
+    motors = actuation(tmp_path / "motors.yaml")
+    command = ["import", str(path), "--actuation", str(motors), "--out"]
+    thesis = tmp_path / "thesis.yaml"
+    thesis.write_text("years: 5\n")
+    for other in (path, motors, thesis):
+        before = other.read_bytes()
+        assert main([*command, str(other)]) == 2
+        assert f"{other}: is a file that hyperleg import did not write" in capsys.readouterr().err
+        assert other.read_bytes() == before
+    assert main([*command, str(out)]) == 0
+    assert main([*command, str(out)]) == 0
+
+
 def two_feet(sphere='<sphere radius="0.02"/>'):
     """A body with a leg that ends in a foot, hanging freely in the world."""
     inertial = (
