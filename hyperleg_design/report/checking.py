@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design import resources
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import HyperlegError, InputError
 from hyperleg_design.reading import read_yaml
 from hyperleg_design.robot.check import check_file, finding_of
 from hyperleg_design.robot.checks.finding import Finding, finding_lines
@@ -22,19 +22,19 @@ def check_paths(paths: Sequence[str]) -> list[dict[str, Any]]:
         paths: files, or names of shipped designs, motors or sweeps.
 
     Returns:
-        For each: `path`, `errors`, `warnings` (counts) and `findings`.
+        For each: `path`, `errors`, `warnings` (counts) and `findings`; a path that names nothing
+        is an error like any other.
 
     Raises:
-        InputError: no paths, or one that names nothing.
+        InputError: no paths.
     """
     if not paths:
         raise InputError(
             "check", "", None, "expects files, or names of shipped designs, motors or sweeps"
         )
-    places = [_find(path) for path in paths]
     results = []
-    for path, place in zip(paths, places, strict=True):
-        findings = _check(place)
+    for path in paths:
+        findings = _check(path)
         errors = sum(f.severity == "error" for f in findings)
         results.append(
             {
@@ -47,14 +47,17 @@ def check_paths(paths: Sequence[str]) -> list[dict[str, Any]]:
     return results
 
 
-def _check(place: Path) -> list[Finding]:
+def _check(path: str) -> list[Finding]:
     try:
+        place = _find(path)
         if place.suffix in (".yaml", ".yml") and {"axes", "sampling"} & set(read_yaml(place)):
             load_sweep(place)
             return []
         return check_file(place)
     except InputError as error:
         return [finding_of(error)]
+    except HyperlegError as error:
+        return [Finding("error", path, str(error))]
 
 
 def _find(path: str) -> Path:
@@ -64,6 +67,8 @@ def _find(path: str) -> Path:
     for kind in ("descriptions", "motors", "sweeps"):
         if path in resources.names(kind):
             return resources.find(kind, path)
+    if Path(path).is_dir():
+        raise InputError(path, "", None, "is a folder; name the files in it")
     raise InputError(
         path,
         "",

@@ -1,7 +1,9 @@
 from __future__ import annotations
 
 import pytest
+import yaml
 
+from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.report.checking import check_paths, checks_text
 
@@ -29,7 +31,21 @@ def test_a_broken_design_is_found(tmp_path):
     assert "toe.mass" in checks_text([found])
 
 
-@pytest.mark.parametrize("paths", [[], ["hyperleg", "nothing-here"]])
-def test_what_names_nothing_is_bad_input(paths):
+def test_nothing_to_check_is_bad_input():
     with pytest.raises(InputError):
-        check_paths(paths)
+        check_paths([])
+
+
+def test_every_file_is_checked_though_others_cannot_be(tmp_path):
+    data = yaml.safe_load(resources.find("descriptions", "parallel_ankle").read_text())
+    rod = next(iter(data["rods"].values()))
+    rod["crank_end"] = rod["crank_axis"]
+    short = tmp_path / "short.yaml"
+    short.write_text(yaml.safe_dump(data))
+    paths = ["nothing-here", str(tmp_path), str(short), "hyperleg"]
+    results = check_paths(paths)
+    assert [entry["path"] for entry in results] == paths
+    assert [entry["errors"] for entry in results] == [1, 1, 1, 0]
+    words = ("no such file", "is a folder", "does not reach in the posture hip_yaw 0 deg, ")
+    for entry, word in zip(results, words, strict=False):
+        assert word in checks_text([entry])

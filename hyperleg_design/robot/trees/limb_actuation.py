@@ -128,11 +128,16 @@ def crank_turn(
     cosine, sine = np.sum(across * reach, -1), np.sum(ahead * reach, -1)
     right = constant + np.sum(reach**2, -1) / 2 - np.sum(parallel * reach, -1)
     size = np.hypot(cosine, sine)
-    if np.any(np.abs(right) >= size):
+    beyond = np.abs(right) >= size
+    if np.any(beyond):
+        angles = np.broadcast_to(np.rad2deg(position), (*beyond.shape, np.shape(position)[-1]))
+        posture = ", ".join(
+            f"{joint} {angle:.4g} deg"
+            for joint, angle in zip(design.joint_sections, angles[beyond][0], strict=True)
+        )
         raise InfeasibleError(
-            f"{design.name}: the rod of motor {motor} does not reach in the posture "
-            f"{np.round(np.rad2deg(position), 1).tolist()} deg; change rods.{motor} or the ranges "
-            f"of the joints"
+            f"{design.name}: the rod of motor {motor} does not reach in the posture {posture}; "
+            f"change rods.{motor} or the ranges of the joints"
         )
     side = -np.sign(np.sum(ahead * start, -1))
     angle = np.arctan2(sine, cosine) + side * np.arccos(right / size)
