@@ -16,6 +16,7 @@ from hyperleg_design.errors import InputError, shown
 from hyperleg_design.reading import read_yaml
 from hyperleg_design.robot.checks.check_housing import check_housing
 from hyperleg_design.robot.checks.check_mjcf import check_mjcf
+from hyperleg_design.robot.checks.check_motor import check_motor
 from hyperleg_design.robot.checks.check_urdf import check_urdf
 from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.checks.urdf_xml import parse_xml
@@ -84,7 +85,8 @@ def check_file(path: str | Path) -> list[Finding]:
     try:
         kind = kind_of(path)
         if kind == "motor":
-            return _unreachable(load_motor(Path(path)), Path(path))
+            motor = load_motor(Path(path))
+            return [*check_motor(motor), *_unreachable(motor, Path(path))]
         if kind == "design":
             return _check_design_file(path)
     except InputError as error:
@@ -114,7 +116,7 @@ def _unreachable(motor: Motor, path: Path) -> list[Finding]:
         Finding(
             "warning",
             str(path),
-            f"is good, but {motor.name} "
+            f"can be used, but {motor.name} "
             + ("names another motor of the catalogue" if known else "is not in the catalogue"),
             f"use its path as the motor, or --motors {folder}"
             + (" under another name" if known else ""),

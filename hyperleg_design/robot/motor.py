@@ -46,7 +46,8 @@ _PRESET = {
     "peak_torque": Rule("number", "Nm", 1e-3, 200),
     "power_constant": Rule("number", "W/Nm^2", 1e-4, 1e5),
 }
-_HEAT_FACTOR = {"dc": 1.0, "phase_peak": 0.75, "phase_rms": 1.5}
+HEAT_FACTOR = {"dc": 1.0, "phase_peak": 0.75, "phase_rms": 1.5}
+"""Factor f of the power constant, by the current that the torque constant divides by [-]."""
 
 
 @dataclass(frozen=True)
@@ -130,9 +131,7 @@ class Motor:
         preset = self.presets.get(constants)
         if preset is not None:
             return preset["power_constant"].value
-        return (
-            _HEAT_FACTOR[self.current_convention] * self.line_resistance / self.torque_constant**2
-        )
+        return HEAT_FACTOR[self.current_convention] * self.line_resistance / self.torque_constant**2
 
     def no_load_speed(self, constants: str = "paper") -> float:
         """Look up the speed without load at the nominal voltage.
@@ -241,7 +240,7 @@ def load_motor(path: Path) -> Motor:
         convention, where, "convention", (), ("resistance", "current", "source", "confidence")
     )
     _one_of(convention.get("resistance"), ("line_line", "phase"), where, "convention.resistance")
-    _one_of(convention.get("current"), tuple(_HEAT_FACTOR), where, "convention.current")
+    _one_of(convention.get("current"), tuple(HEAT_FACTOR), where, "convention.current")
     _one_of(data["kind"], ("inrunner", "outrunner", "flat"), where, "kind")
     presets = {}
     declared = data.get("presets") or {}

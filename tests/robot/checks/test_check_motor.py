@@ -1,0 +1,32 @@
+"""The torque constant of a motor against its voltage and speed."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from hyperleg_design.robot.checks.check_motor import check_motor
+from hyperleg_design.robot.motors import catalogue
+
+
+def scaled(name, factor):
+    motor = catalogue()[name]
+    constant = motor.constants["torque_constant"]
+    constant = dataclasses.replace(constant, value=factor * constant.value)
+    return dataclasses.replace(motor, constants={**motor.constants, "torque_constant": constant})
+
+
+@pytest.mark.parametrize("name", sorted(catalogue()))
+def test_shipped_motors_agree_and_a_factor_of_ten_does_not(name):
+    assert check_motor(catalogue()[name]) == []
+    for factor in (10, 0.1):
+        (finding,) = check_motor(scaled(name, factor))
+        assert finding.severity == "warning"
+
+
+def test_the_constant_that_fits_is_named():
+    (finding,) = check_motor(scaled("U10", 10))
+    right = catalogue()["U10"].torque_constant
+    assert f"is {10 * right:.4g} Nm/A, 10 times" in finding.message
+    assert f"({right:.3g} Nm/A)" in finding.message
