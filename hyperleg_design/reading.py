@@ -149,7 +149,7 @@ def short_name(path: Path) -> str:
     Returns:
         The short name.
     """
-    return f"{path.parent.name}/{path.name}" if path.parent.name else path.name
+    return f"{path.parent.name}/{path.name}" if path.parent.name else path.name or str(path)
 
 
 def summary_line(documented: object) -> str:

@@ -83,6 +83,7 @@ def test_any_bytes_are_read_or_refused(tmp_path_factory, content):
 def test_short_name():
     assert short_name(Path("/a/b/c.yaml")) == "b/c.yaml"
     assert short_name(Path("c.yaml")) == "c.yaml"
+    assert short_name(Path(".")) == "."
 
 
 def test_a_summary_line_joins_what_the_source_wraps_and_leaves_out_what_follows():

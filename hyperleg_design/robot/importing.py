@@ -80,9 +80,16 @@ def import_robot(
         InputError: the file is no robot (see `described_file.read_robot`), a joint without a motor,
             a pattern that matches nothing, or actuation that does not fit.
     """
-    robot, motors = read_robot(path, meshes=meshes), Path(actuation)
+    motors = Path(actuation)
     data, where = with_motor_paths(read_yaml(motors), motors.parent), short_name(motors)
-    design = tree_design_from_mapping(design_mapping(robot, data, where), robot.name, where)
+    robot = read_robot(path, meshes=meshes)
+    mapping = design_mapping(robot, data, where)
+    try:
+        design = tree_design_from_mapping(mapping, robot.name, where)
+    except InputError as error:
+        if not error.field.startswith("links."):
+            raise
+        raise InputError(robot.source, error.field, error.value, error.remedy) from None
     return design, [*lint(robot, design), *check_housing(design)]
 
 
@@ -160,6 +167,11 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
         _fields(held, where, f"actuators.{pattern}", "motor: RI70, gear: 9")
         for name in names:
             actuators[name] = _housed(robot, name, locked, held) | dict(held)
+    still = [name for name in free if name not in actuators]
+    if still and not data.get("transmission") and not data.get("rods"):
+        more = f", nor have {', '.join(still[1:])}" if still[1:] else ""
+        remedy = f"has no motor{more}; name one under actuators, or list the joint under lock"
+        raise InputError(where, f"joints.{still[0]}", None, remedy)
     joints = {
         name: _joint(joint, robot.source, name in locked) for name, joint in robot.joints.items()
     }

@@ -158,7 +158,10 @@ def test_broken_files_are_one_clear_error_and_nothing_is_written(case, tmp_path,
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        ({"actuators": {"hip": LEG["hip"]}}, ["joints.knee", "no motor"]),
+        (
+            {"actuators": {"hip": LEG["hip"]}},
+            ["joints.knee", "no motor; name one under actuators", "lock"],
+        ),
         ({"actuators": LEG, "lock": ["elbow"]}, ["lock.elbow", "no such moving joint"]),
         ({"actuators": LEG, "joints": {"elbow": {}}}, ["joints.elbow", "no such joint"]),
         ({"actuators": LEG, "lock": "hip"}, ["lock = 'hip'", "expects a list"]),
@@ -187,6 +190,15 @@ def test_actuation_that_does_not_fit_is_named(data, words, tmp_path):
         import_robot(path, actuation(tmp_path / "motors.yaml", **data))
     for word in ["motors.yaml", *words]:
         assert word in str(caught.value)
+
+
+def test_errors_name_the_file_that_is_wrong(tmp_path):
+    path = tmp_path / "leg.urdf"
+    path.write_text(urdf(leg()).replace('mass value="1.0"', 'mass value="1000.0"', 1))
+    with pytest.raises(InputError, match=r"leg\.urdf: links\.base\.mass = 1000"):
+        import_robot(path, actuation(tmp_path / "motors.yaml"))
+    with pytest.raises(InputError, match=r"gone\.yaml: cannot be read"):
+        import_robot(tmp_path / "gone.urdf", tmp_path / "gone.yaml")
 
 
 def test_a_sliding_joint_is_refused_until_it_is_locked(tmp_path):

@@ -14,6 +14,7 @@ from typing import Any
 from hyperleg_design.errors import in_short
 from hyperleg_design.robot.checks.check_urdf_joint import check_joint
 from hyperleg_design.robot.checks.check_urdf_link import check_link
+from hyperleg_design.robot.checks.check_urdf_mass import check_mass
 from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.checks.urdf_xml import ends_of, numbers, parse_xml, place_of
 
@@ -201,12 +202,12 @@ def _weightless(links: list[Any], joints: list[Any]) -> list[Finding]:
 
 
 def _loads(root: Any) -> list[Finding]:
-    """Whether Pinocchio, which analyses it, takes it."""
+    """Whether Pinocchio, which analyses it, takes it, and whether its mass fits its size."""
     import pinocchio
     from lxml import etree  # type: ignore[import-untyped]
 
     try:
-        pinocchio.buildModelFromXML(etree.tostring(root, encoding="unicode"))
+        model = pinocchio.buildModelFromXML(etree.tostring(root, encoding="unicode"))
     except (ValueError, RuntimeError) as error:
         return [
             Finding(
@@ -216,4 +217,4 @@ def _loads(root: Any) -> list[Finding]:
                 "correct that element",
             )
         ]
-    return []
+    return check_mass(model)

@@ -111,7 +111,8 @@ def _tensor(values: np.ndarray, mass: float, place: str, carried: bool) -> list[
                 "error",
                 place,
                 f"no body has this inertia (principal moments {shown} kg m^2)",
-                "the largest must not exceed the sum of the others",
+                "the largest must not exceed the sum of the others; correct them in the file (a "
+                "box of edges a, b, c has m (b^2 + c^2) / 12 about a)",
             )
         ]
     gyration = math.sqrt(principal[2] / mass)
