@@ -37,6 +37,17 @@ class Solid:
     colour: str
     opacity: float = 1.0
 
+    @property
+    def reach(self) -> np.ndarray:
+        """How far it reaches from its position along the axes of the world [m], `(3,)`."""
+        if self.kind == "sphere":
+            return np.full(3, self.size[0])
+        half = np.array(self.size) / 2
+        if self.kind != "box":
+            radius, length = self.size
+            half = np.array([radius, radius, length / 2 + radius * (self.kind == "capsule")])
+        return np.asarray(np.abs(self.rotation) @ half)
+
 
 @dataclass(frozen=True)
 class Scene:

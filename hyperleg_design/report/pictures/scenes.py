@@ -32,11 +32,12 @@ def robot_scene(design: RobotDesign) -> Scene:
     tree = build_tree(design)
     solids = robot_solids(design, angles=default_angles(tree), yaw=np.deg2rad(40), tree=tree)
     places = np.array([solid.position for solid in solids] or [np.zeros(3)])
-    low, high = places.min(0), places.max(0)
+    reach = np.array([solid.reach for solid in solids] or [np.zeros(3)])
+    low, high = (places - reach).min(0), (places + reach).max(0)
     middle, extent = (low + high) / 2, max(float((high - low).max()), 0.2)
     camera = (tuple(middle + np.array([5.0 * extent, 0.0, extent])), tuple(middle))
     return Scene(
-        tuple(solids), (), (), camera=camera, height=1.3 * extent, size=(1000, 820), font=24
+        tuple(solids), (), (), camera=camera, height=1.25 * extent, size=(1000, 820), font=24
     )
 
 

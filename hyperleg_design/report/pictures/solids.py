@@ -98,8 +98,10 @@ def robot_solids(
 def link_solids(
     design: RobotDesign, tree: Tree, *, opacity: float = 1.0, motors: bool = True
 ) -> dict[str, list[Solid]]:
-    """Collect the solids of each link in the link's own frame; rods from joint to joint where
-    no link has a drawing, as in robots from a URDF.
+    """Collect the solids of each link in the link's own frame.
+
+    A link of a written-out tree that has no drawing, as in robots from a URDF, gets rods from its
+    origin to its joints and pads, or to its centre of mass where it has neither.
 
     Args:
         design: one robot of any family.
@@ -140,12 +142,13 @@ def link_solids(
         add = _motor_solids if tree.hyperleg else _tree_motor_solids
         for name, solid in add(cast("Any", design), tree, opacity):
             solids[name].append(solid)
-    if not any(link.visuals for link in tree.links):
-        for joint in tree.joints:
-            solids[joint.parent] += _rod(np.array(joint.position), opacity)
+    if not tree.hyperleg:
         for link in tree.links:
-            for pad in link.pads:
-                solids[link.name] += _rod(np.array(pad.position), opacity)
+            if not link.visuals:
+                ends = [joint.position for joint in tree.joints if joint.parent == link.name]
+                ends += [pad.position for pad in link.pads]
+                for end in ends or [link.com]:
+                    solids[link.name] += _rod(np.array(end), opacity)
     return solids
 
 
@@ -154,11 +157,15 @@ def _rod(end: np.ndarray, opacity: float) -> list[Solid]:
     length = float(np.linalg.norm(end))
     if length < 1e-6:
         return []
-    along = end / length
-    aside = np.linalg.svd(along[None])[2][1]
-    rotation = np.column_stack([aside, np.cross(along, aside), along])
     size = (ROD * length, length)
-    return [Solid("cylinder", size, rotation, end / 2, FRAME, min(opacity, 0.6))]
+    return [Solid("cylinder", size, _z_along(end), end / 2, FRAME, min(opacity, 0.6))]
+
+
+def _z_along(vector: np.ndarray) -> np.ndarray:
+    """A rotation whose z axis points along a vector, `(3, 3)`."""
+    along = vector / np.linalg.norm(vector)
+    aside = np.linalg.svd(along[None])[2][1]
+    return np.column_stack([aside, np.cross(along, aside), along])
 
 
 def _motor_radius(mass: float) -> float:
@@ -208,14 +215,17 @@ def _motor_solids(design: Design, tree: Tree, opacity: float) -> Iterator[tuple[
 def _tree_motor_solids(
     design: TreeDesign, tree: Tree, opacity: float
 ) -> Iterator[tuple[str, Solid]]:
-    """Motors of a robot that writes its tree out as discs of their mass, each with its link."""
+    """Motors of a robot that writes its tree out as discs of their mass about the axis that they
+    turn, each with its link.
+    """
     from hyperleg_design.robot.motors import find_motor
     from hyperleg_design.robot.trees.tree_build import model_link
     from hyperleg_design.robot.trees.tree_limb import copied
 
     colours = tuple(dict.fromkeys(MOTOR_COLOUR.values()))
+    axes = {name: _turned_axis(design, name) for name in design.actuator_sections}
     for copy, section in design.copy_sections.items():
-        for index, actuator in enumerate(design.actuator_sections.values()):
+        for index, (name, actuator) in enumerate(design.actuator_sections.items()):
             in_root = actuator.housed_in == design.trunk.link
             link = tree.base if in_root else model_link(copy, str(actuator.housed_in))
             place = copied(section, np.asarray(actuator.place, float), move=in_root)
@@ -225,9 +235,24 @@ def _tree_motor_solids(
                 Solid(
                     "cylinder",
                     (radius, 0.8 * radius),
-                    _ACROSS,
+                    _z_along(copied(section, axes[name])),
                     place,
                     colours[index % len(colours)],
                     opacity,
                 ),
             )
+
+
+def _turned_axis(design: TreeDesign, motor: str) -> np.ndarray:
+    """Axis of the crank or joint that a motor drives most, in the frame of its housing, `(3,)`."""
+    from hyperleg_design.robot.trees.tree_limb import link_frames
+
+    if motor in design.rod_sections:
+        rod = design.rod_sections[motor]
+        axis, link = rod.axis, str(rod.carrier)
+    else:
+        name = max(design.joint_sections, key=lambda joint: abs(float(design.ratio(motor, joint))))
+        axis, link = design.all_joints[name].axis, str(design.all_joints[name].child)
+    frames = link_frames(design)
+    housing = frames[str(design.actuator_sections[motor].housed_in)][0]
+    return np.asarray(housing.T @ frames[link][0] @ np.asarray(axis, float))

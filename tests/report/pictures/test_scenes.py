@@ -22,5 +22,8 @@ def test_scenes_name_the_design_numbers():
 @pytest.mark.parametrize("name", ["hyperleg", "mini_cheetah", "teaching_leg"])
 def test_a_robot_of_any_size_fits_into_its_picture(name):
     scene = scenes.robot_scene(load_robot(name))
-    places = np.array([solid.position for solid in scene.solids])
-    assert np.abs(places - scene.camera[1]).max() < scene.height / 2
+    ends = np.array([abs(s.position - scene.camera[1]) + s.reach for s in scene.solids])
+    forward, _, up = np.array(scene.camera[0]) - scene.camera[1]
+    tilt = np.arctan2(up, forward)
+    assert (np.cos(tilt) * ends[:, 2] + np.sin(tilt) * ends[:, 0]).max() < scene.height / 2
+    assert ends[:, 1].max() < scene.height / 2 * scene.size[0] / scene.size[1]

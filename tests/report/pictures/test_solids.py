@@ -9,7 +9,7 @@ from hyperleg_design.report.pictures.solids import PAD, link_solids, robot_solid
 from hyperleg_design.robot.ablation import variants
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.kinematics.tree import build_tree
-from tests.robot.tree_files import leg
+from tests.robot.tree_files import leg, leg_file
 
 
 @pytest.fixture(scope="module")
@@ -56,3 +56,30 @@ def test_robots_without_drawings_get_rods_from_joint_to_joint_and_to_their_pads(
             along = rod.rotation @ [0, 0, rod.size[1]]
             assert np.allclose(along, 2 * rod.position)
             assert np.linalg.det(rod.rotation) == pytest.approx(1)
+
+
+def test_a_link_without_a_shape_gets_rods_though_another_has_one():
+    box = {"mass": 1.0, "gyration": [0.1] * 3, "shape": "box", "size": [0.2, 0.1, 0.1]}
+    parts = leg_file()
+    design = leg(links={**parts["links"], "base": box})
+    solids = link_solids(design, build_tree(design), motors=False)
+    assert [s.kind for s in solids["base"]] == ["box"]
+    assert [s.kind for s in solids["thigh"]] == ["cylinder"]
+    assert [s.kind for s in solids["shank"]] == ["sphere", "cylinder"]
+    design = leg(pads={})
+    (rod,) = link_solids(design, build_tree(design), motors=False)["shank"]
+    assert np.allclose(2 * rod.position, [0, 0, -0.1])  # to the centre of mass
+
+
+@pytest.mark.parametrize("axis", [[1, 0, 0], [0, 1, 0], [0, 0, 1]])
+def test_motors_turn_about_the_axes_of_their_joints(axis):
+    parts = leg_file()
+    hip = parts["joints"]["hip"] | {"axis": axis}
+    knee = parts["joints"]["knee"] | {"axis": axis, "turn_deg": [90, 0, 0]}
+    design = leg(joints={"hip": hip, "knee": knee})
+    tree = build_tree(design)
+    both, plain = (link_solids(design, tree, motors=m) for m in (True, False))
+    turn = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+    for link, along in (("base", axis), ("thigh", turn @ axis)):
+        (motor,) = [s for s in both[link] if s.size not in [p.size for p in plain[link]]]
+        assert abs(motor.rotation[:, 2] @ along) == pytest.approx(1)
