@@ -156,7 +156,7 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
     odd = [n for n in moving if robot.joints[n].kind != "revolute" and n not in locked]
     if odd:
         more = f", and so are {', '.join(odd[1:])}" if odd[1:] else ""
-        remedy = f"is no kind of joint that a design moves{more}; list them under lock"
+        remedy = f"is no kind of joint that a design moves{more}; list them or patterns under lock"
         raise InputError(robot.source, f"joint {odd[0]}", robot.joints[odd[0]].kind, remedy)
     free = [name for name in moving if name not in locked]
     actuators: dict[str, Any] = {}

@@ -207,12 +207,16 @@ def test_a_sliding_joint_is_refused_until_it_is_locked(tmp_path):
     with pytest.raises(InputError, match=r"joint hip.*prismatic.*lock"):
         import_robot(path, actuation(tmp_path / "motors.yaml"))
     path.write_text(path.read_text().replace('type="revolute"', 'type="prismatic"'))
-    with pytest.raises(InputError, match=r"joint hip.*so are knee; list them under lock"):
+    with pytest.raises(
+        InputError, match=r"joint hip.*so are knee; list them or patterns under lock"
+    ):
         import_robot(path, actuation(tmp_path / "motors.yaml"))
     path.write_text(urdf(leg()).replace('type="revolute"', 'type="prismatic"', 1))
     motors = actuation(tmp_path / "m.yaml", lock=["hip"], actuators={"knee": LEG["knee"]})
     design, _ = import_robot(path, motors)
     assert list(design.joint_sections) == ["knee"]
+    motors = actuation(tmp_path / "m.yaml", lock=["h*"], actuators={"*": LEG["knee"]})
+    assert list(import_robot(path, motors)[0].joint_sections) == ["knee"]
 
 
 def test_the_command_writes_a_design_that_loads(tmp_path, capsys):

@@ -145,10 +145,9 @@ def link_solids(
     if not tree.hyperleg:
         for link in tree.links:
             if not link.visuals:
-                ends = [joint.position for joint in tree.joints if joint.parent == link.name]
-                ends += [pad.position for pad in link.pads]
-                for end in ends or [link.com]:
-                    solids[link.name] += _rod(np.array(end), opacity)
+                behind = [*(j for j in tree.joints if j.parent == link.name), *link.pads]
+                for end in [np.array(part.position) for part in behind] or [link.com]:
+                    solids[link.name] += _rod(end, opacity)
     return solids
 
 
