@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -42,8 +43,8 @@ DUMMY_INERTIA = 1e-5
 the moments of a ball where it has those of no body [kg m^2]."""
 AGREES = 0.05
 """Relative difference up to which a limit of the file agrees with the motors [-]."""
-HEAD = "# Written by `hyperleg import`, which replaces this file.\n"
-"""First line of a design that import writes: it replaces no other file."""
+HEAD = "# Written by `hyperleg import`, which replaces this file until it is edited: {}\n"
+"""First line of a design that import writes, with a checksum of the rest."""
 KEYS = (
     "name",
     "trunk",
@@ -98,7 +99,7 @@ def write_imported(design: TreeDesign, out: str | Path) -> Path:
 
     Args:
         design: the design.
-        out: a new file, or one that this function wrote.
+        out: a new file, or one that this function wrote and nobody has edited.
 
     Returns:
         The file.
@@ -107,12 +108,15 @@ def write_imported(design: TreeDesign, out: str | Path) -> Path:
         OutputError: another file stands there, such as one that was imported; it is untouched.
     """
     out = Path(out)
-    if out.is_file() and not out.read_bytes().startswith(HEAD.encode()):
-        raise OutputError(
-            f"{out}: is a file that hyperleg import did not write; choose another --out, or remove "
-            f"it first"
-        )
-    return write_text(out, HEAD + design_yaml(design))
+    if out.is_file():
+        head, _, rest = out.read_bytes().partition(b"\n")
+        if head + b"\n" != HEAD.format(sha256(rest).hexdigest()).encode():
+            raise OutputError(
+                f"{out}: is a file that hyperleg import did not write, or that was edited since; "
+                f"choose another --out, or remove it first"
+            )
+    text = design_yaml(design)
+    return write_text(out, HEAD.format(sha256(text.encode()).hexdigest()) + text)
 
 
 def base_line(design: TreeDesign) -> str:

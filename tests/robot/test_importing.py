@@ -242,6 +242,9 @@ def test_only_a_file_that_import_wrote_is_replaced(tmp_path, capsys):
         assert other.read_bytes() == before
     assert main([*command, str(out)]) == 0
     assert main([*command, str(out)]) == 0
+    out.write_text(out.read_text() + "# mine\n")
+    assert main([*command, str(out)]) == 2
+    assert "edited since" in capsys.readouterr().err
 
 
 def two_feet(sphere='<sphere radius="0.02"/>'):

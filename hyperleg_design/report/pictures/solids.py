@@ -145,8 +145,10 @@ def link_solids(
     if not tree.hyperleg:
         for link in tree.links:
             if not link.visuals:
-                behind = [*(j for j in tree.joints if j.parent == link.name), *link.pads]
-                for end in [np.array(part.position) for part in behind] or [link.com]:
+                joints = [joint for joint in tree.joints if joint.parent == link.name]
+                ends = [np.array(joint.position) for joint in joints]
+                ends += [np.array(pad.position) for pad in link.pads]
+                for end in ends or [link.com]:
                     solids[link.name] += _rod(end, opacity)
     return solids
 

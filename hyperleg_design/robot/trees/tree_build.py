@@ -16,7 +16,7 @@ from hyperleg_design.robot.trees.tree_design import TreeDesign
 MIRROR = np.array([1.0, -1.0, 1.0])
 """Mirrors positions in the plane y = 0; axes and turns, which are pseudovectors, take its
 opposite."""
-WORLD, ROOT = "world", "world_link"
+WORLD, WORLD_BODY = "world", "world_body"
 """A link that MuJoCo would take for its world, which neither moves nor carries joints, and the name
 that it gets in models."""
 
@@ -69,7 +69,7 @@ def model_link(copy: str, link: str) -> str:
         The name, which is never `WORLD`.
     """
     name = prefixed(copy, link)
-    return ROOT if name == WORLD else name
+    return WORLD_BODY if name == WORLD else name
 
 
 def _link(design: TreeDesign, name: str, own: str, body: Any, *, mirror: bool) -> Link:

@@ -119,5 +119,5 @@ def test_a_root_named_world_is_a_body_of_its_own_in_mujoco(motion):
     design = leg(trunk=trunk, links=links, joints=joints, actuators=motors)
     model = mujoco_model(design)
     assert model.nv == 2 + 6 * (motion == "floating")
-    assert model.body("world_link").mass == pytest.approx(1.0)
-    assert rigid_body_model(design).model.existBodyName("world_link")
+    assert model.body("world_body").mass == pytest.approx(1.0)
+    assert rigid_body_model(design).model.existBodyName("world_body")
