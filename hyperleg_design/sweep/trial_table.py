@@ -293,6 +293,25 @@ def build_command(sweep: Sweep, row: Mapping[str, Any]) -> str:
     Returns:
         The command line.
     """
+    design = design_argument(sweep.base)
+    return f"hyperleg build --design {design}{_options(sweep, row)} --out built"
+
+
+def view_command(sweep: Sweep, row: Mapping[str, Any]) -> str:
+    """Write the command that shows one design of a sweep in three dimensions.
+
+    Args:
+        sweep: the definition.
+        row: of the design, with its values on the axes.
+
+    Returns:
+        The command line.
+    """
+    return f"hyperleg view {design_argument(sweep.base)}{_options(sweep, row)}"
+
+
+def _options(sweep: Sweep, row: Mapping[str, Any]) -> str:
+    """Options that turn a sweep's base into one of its designs."""
     settings: dict[str, Any] = {
         path: sweep.base[path]
         for path, origin in sweep.base.origins.items()
@@ -301,11 +320,9 @@ def build_command(sweep: Sweep, row: Mapping[str, Any]) -> str:
     for axis in sweep.axes:
         leaf = axis.leaf_values(sweep.base, np.asarray([row[axis.name]]))
         settings |= {path: np.asarray(value)[0] for path, value in leaf.items()}
-    changes = " ".join(f"--set '{path}={_yaml(value)}'" for path, value in settings.items())
-    base = f"--design {design_argument(sweep.base)}"
-    if row["variant"] != AS_DESCRIBED:
-        base += f" --variant {row['variant']}"
-    return f"hyperleg build {base}{folder_option()} {changes} --out built"
+    changes = "".join(f" --set '{path}={_yaml(value)}'" for path, value in settings.items())
+    variant = "" if row["variant"] == AS_DESCRIBED else f" --variant {row['variant']}"
+    return f"{variant}{folder_option()}{changes}"
 
 
 def _yaml(value: Any) -> str:

@@ -17,6 +17,7 @@ from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.sweep.spaces.axis import Axis
 from hyperleg_design.sweep.spaces.definition import Map, Sweep
+from hyperleg_design.sweep.trial_table import view_command
 
 MOST_POINTS = 1000
 """Designs of a page's explorer; of larger sweeps those of the fronts and maps and an even sample
@@ -62,7 +63,11 @@ def explorer(
     rest = max(MOST_POINTS - int(first.sum()), MOST_POINTS // 3)
     rows = np.union1d(np.flatnonzero(first), others[thinned(others.size, rest)])
     columns: list[dict[str, Any]] = [
-        {"name": "variant", "label": "variant", "values": _texts(table["variant"][rows])}
+        {
+            "name": "variant",
+            "label": "variant" if sweep.has_variants else "none",
+            "values": _texts(table["variant"][rows]),
+        }
     ]
     for axis in sweep.axes:
         values = table[axis.name][rows]
@@ -75,7 +80,6 @@ def explorer(
                 "axis": True,
                 "log": axis.log,
                 "base": _plain(base),
-                "settings": _settings(axis, sweep.base),
             }
         )
     columns += [
@@ -97,7 +101,7 @@ def explorer(
             "colours": {v: variant_colour(v) for v in sweep.variants},
             "views": [_view(chosen, labels) for chosen in maps],
             "grid": sweep.sampling == "grid",
-            "design": sweep.base.name,
+            "look": _commands(sweep, axes, table["variant"][rows]),
             "drawings": drawings,
             "robot": robot,
             "shown": f"{len(rows)} designs"
@@ -125,9 +129,12 @@ def _view(chosen: Map, labels: Mapping[str, str]) -> dict[str, str]:
     return view | {"text": f"{label} over {chosen.x}"}
 
 
-def _settings(axis: Axis, base: RobotDesign) -> list[list[Any]]:
-    """Paths that an axis sets, and what its value multiplies, or None where it replaces."""
-    return [[path, np.asarray(base[path]).tolist() if axis.scaled else None] for path in axis.paths]
+def _commands(sweep: Sweep, axes: Mapping[str, np.ndarray], variants: np.ndarray) -> list[str]:
+    """What shows each design in three dimensions."""
+    return [
+        view_command(sweep, {name: values[i] for name, values in axes.items()} | {"variant": v})
+        for i, v in enumerate(variants)
+    ]
 
 
 def _drawings(

@@ -16,6 +16,7 @@ function explorer(place, data) {
     x: (measured[0] || axes[0]).name, y: (measured[1] || measured[0] || axes[0]).name, colour: "variant" };
   const variants = [...new Set(byName("variant").values)];
   const offered = columns.filter((c) => c.name !== "variant");
+  const listed = variants.length > 1 ? columns : offered;
   fill(find(".x"), offered, firstView.x);
   fill(find(".y"), offered, firstView.y);
   fill(find(".colour"), columns, firstView.colour);
@@ -43,13 +44,17 @@ function explorer(place, data) {
   const scale = ["#414487", "#2a788e", "#22a884", "#7ad151", "#fde725"].map((c, i) => [i / 4, c]);
   const dark = matchMedia("(prefers-color-scheme: dark)");
 
+  // Parameters that are held: where none is on an axis of the plot, every design belongs to it.
+  function heldColumns() {
+    const used = [find(".x").value, find(".y").value, find(".colour").value];
+    return find(".others").checked && data.grid && used.some((name) => byName(name).axis)
+      ? columns.filter((c) => c.axis && !used.includes(c.name)) : [];
+  }
+
   function shown() {
     const low = parseFloat(find(".low").value), high = parseFloat(find(".high").value);
     const filter = byName(find(".filter").value).values;
-    const used = [find(".x").value, find(".y").value, find(".colour").value];
-    // Where no parameter is on an axis of the plot, every design belongs to it.
-    const held = find(".others").checked && data.grid && used.some((name) => byName(name).axis)
-      ? columns.filter((c) => c.axis && !used.includes(c.name)) : [];
+    const held = heldColumns();
     const variant = find(".variant").value;
     const near = (c, v) => v === c.base || Math.abs(v - c.base) <= 1e-4 * Math.abs(c.base);
     const rows = [];
@@ -64,7 +69,7 @@ function explorer(place, data) {
   }
 
   function hover(i) {
-    return columns.map((c) => `${c.label}: ${c.values[i] ?? "–"}`).join("<br>");
+    return listed.map((c) => `${c.label}: ${c.values[i] ?? "–"}`).join("<br>");
   }
 
   function draw() {
@@ -118,7 +123,7 @@ function explorer(place, data) {
     const head = find(".scroll thead"), body = find(".scroll tbody");
     head.innerHTML = body.innerHTML = "";
     const top = head.insertRow();
-    columns.forEach((c) => {
+    listed.forEach((c) => {
       const cell = document.createElement("th"), button = document.createElement("button");
       const mark = c.name === state.order ? (state.down ? " ▼" : " ▲") : "";
       button.textContent = c.label + mark;
@@ -136,14 +141,15 @@ function explorer(place, data) {
       row.dataset.row = i;
       row.className = i === state.chosen ? "chosen" : "";
       row.onclick = () => choose(i);
-      columns.forEach((c) => {
+      listed.forEach((c) => {
         const cell = row.insertCell();
         cell.textContent = c.values[i] ?? "–";
         if (typeof c.values[i] === "number") cell.className = "num";
       });
     });
     find(".count").textContent = `${rows.length} of ${data.shown}`
-      + (rows.length > 50 ? "; the first 50 in the table" : "");
+      + (rows.length > 50 ? "; the first 50 in the table" : "")
+      + (heldColumns().length ? "; in the others, further parameters are changed" : "");
   }
 
   function choose(i) {
@@ -156,15 +162,9 @@ function explorer(place, data) {
     svg.innerHTML = `<line class="floor" x1="${low}" y1="20" x2="${low + width}" y2="20"/>` + lines.map(
       (l) => `<line x1="${l[0]}" y1="${-l[1]}" x2="${l[2]}" y2="${-l[3]}"/>`
         + `<circle cx="${l[0]}" cy="${-l[1]}" r="16"/>`).join("");
-    const settings = columns.filter((c) => c.axis).flatMap((c) => c.settings.map(([path, base]) => {
-      const v = c.values[i], grown = base === null ? v
-        : Array.isArray(base) ? "[" + base.map((b) => +(b * v).toPrecision(8)) + "]" : +(base * v).toPrecision(8);
-      return ` --set '${path}=${grown}'`;
-    })).join("");
-    const variant = byName("variant").values[i] ? ` --variant ${byName("variant").values[i]}` : "";
-    find(".look").textContent = `hyperleg view ${data.design}${variant}${settings}`;
+    find(".look").textContent = data.look[i];
     find(".values").innerHTML = "";
-    columns.forEach((c) => {
+    listed.forEach((c) => {
       const row = find(".values").insertRow();
       row.insertCell().textContent = c.label;
       const cell = row.insertCell();

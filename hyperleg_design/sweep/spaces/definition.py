@@ -61,6 +61,11 @@ class Sweep:
     """Further maps, of measures of trials."""
 
     @property
+    def has_variants(self) -> bool:
+        """Whether the designs are ablations; those that describe their own tree are not."""
+        return self.variants != (AS_DESCRIBED,)
+
+    @property
     def size(self) -> int:
         """Rows of the table: samples times variants."""
         return self.count * len(self.variants)

@@ -97,6 +97,17 @@ def test_a_side_view_stands_on_the_floor_and_is_as_tall_as_the_robot():
         assert 250 < heights.max() < 1100
 
 
+def test_the_command_of_a_file_names_the_file_and_no_variant(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.yaml").write_text("base: mini_cheetah\nname: other\n")
+    axes = {"links.trunk.mass": {"values": [3.0, 4.0]}}
+    sweep = sweep_from_mapping({"design": "mine.yaml", "axes": axes, "measures": ["total_mass"]})
+    table = {"variant": np.array(["as_described"] * 2), "links.trunk.mass": np.array([3.0, 4.0])}
+    data = explorer.explorer(sweep, table, {}, (), np.zeros(2, bool), "a").data
+    assert data["look"][1] == "hyperleg view mine.yaml --set 'links.trunk.mass=4'"
+    assert data["columns"][0]["label"] == "none"
+
+
 def test_thinning_spreads_and_levels_are_nearest(result):
     assert thinned(5, 9).tolist() == [0, 1, 2, 3, 4]
     assert thinned(101, 3).tolist() == [0, 50, 100]
@@ -144,6 +155,8 @@ def rows_after(browser, **values):
 def test_a_map_shows_one_variant_and_a_cloud_of_measures_all_designs(page, browser):
     browser.open(page.as_uri())
     assert {row[0] for row in rows_after(browser)} == {"toe"}
+    count = browser.run("document.querySelector('.explorer .count').innerText")
+    assert count == "15 of 60 designs; in the others, further parameters are changed"
     assert len(rows_after(browser)) == 5 * 3
     assert {row[0] for row in rows_after(browser, variant="")} == {"toe", "toe_removed_matched"}
     rows_after(browser, x="swing_inertia", y="squat_heat", colour="variant")
