@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.shipped import Shipped, shipped_policies
 from hyperleg_design.robot.load import design_argument
+from hyperleg_design.robot.motors import folder_option
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.simulation.model import simulation_spec
 
@@ -105,6 +106,6 @@ def _remedy(kind: str, design: RobotDesign) -> str:
     options = options.replace("NAME", name)
     robot = design_argument(design) if isinstance(design, TreeDesign) else name
     return (
-        f"hyperleg train --task {options} --design {robot} --out FOLDER/{group}-{name}-0 trains "
-        f"one, and --policies FOLDER takes it"
+        f"hyperleg train --task {options} --design {robot}{folder_option()} "
+        f"--out FOLDER/{group}-{name}-0 trains one, and --policies FOLDER takes it"
     )

@@ -18,6 +18,7 @@ from hyperleg_design.robot.kinematics import dimensions
 from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.mass.mass_rows import MassRow, mass_rows
 from hyperleg_design.robot.mjcf import mjcf
+from hyperleg_design.robot.own_motors import motors_beside
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.writing import output_folder, write_bytes, write_json
 
@@ -41,9 +42,10 @@ COLUMNS = (
 def build(design: RobotDesign, out: str | Path) -> Path:
     """Write a folder with everything about one robot; the same design gives the same bytes.
 
-    `NAME.urdf` and `NAME.xml` (MJCF), `design.yaml` (reads back as the same design), `tree.yaml`
-    with the xacro template (`xacro robot.urdf.xacro tree:=tree.yaml`), `masses.csv`, `masses.md`,
-    and `manifest.json` with versions and checksums.
+    `NAME.urdf` and `NAME.xml` (MJCF), `design.yaml` (reads back as the same design, with copies of
+    motors that are not shipped in `own_motors/`), `tree.yaml` with the xacro template (`xacro
+    robot.urdf.xacro tree:=tree.yaml`), `masses.csv`, `masses.md`, and `manifest.json` with versions
+    and checksums.
 
     Args:
         design: one robot.
@@ -54,20 +56,22 @@ def build(design: RobotDesign, out: str | Path) -> Path:
         The folder.
 
     Raises:
-        InputError: a batch of designs.
+        InputError: a batch of designs, or two motors of the same name.
         OutputError: the folder is not ours, or cannot be written; nothing is left half-written.
     """
     tree = build_tree(design)
     rows = mass_rows(design)
+    mapping = design.to_mapping()
+    motors = motors_beside(mapping)
     texts = {
         f"{design.name}.urdf": urdf(design, tree),
         f"{design.name}.xml": mjcf(design),
-        "design.yaml": design_yaml(design),
+        "design.yaml": _design_yaml(mapping),
         "tree.yaml": tree_yaml(tree),
         "masses.csv": masses_csv(rows),
         "masses.md": masses_markdown(design, rows),
     }
-    files = {name: text.encode() for name, text in texts.items()}
+    files = {name: text.encode() for name, text in texts.items()} | motors
     template = (resources.content_folder("descriptions") / TEMPLATE).read_text(encoding="utf-8")
     files[TEMPLATE] = template.replace(
         '<robot name="robot"', f'<robot name="{design.name}"'
@@ -88,12 +92,16 @@ def design_yaml(design: RobotDesign) -> str:
     Returns:
         The text; `load_design` reads it back as the same design.
     """
+    return _design_yaml(design.to_mapping())
+
+
+def _design_yaml(mapping: dict[str, Any]) -> str:
     head = (
         "# A resolved design: every value, with label and source. `hyperleg build --design "
         "design.yaml` makes the same robot.\n"
     )
     return head + yaml.dump(
-        design.to_mapping(),
+        mapping,
         Dumper=getattr(yaml, "CSafeDumper", yaml.SafeDumper),
         sort_keys=False,
         default_flow_style=None,

@@ -120,6 +120,22 @@ def folder_option() -> str:
     return f" --motors {shlex.quote(folder)}" if folder else ""
 
 
+def own_file(name: str) -> Path | None:
+    """Find the file of a motor that is not shipped.
+
+    Args:
+        name: of the motor, or the path of its file.
+
+    Returns:
+        The path; None for a shipped motor.
+    """
+    if name.endswith(".yaml"):
+        return Path(name)
+    folders = filter(None, os.environ.get(FOLDERS, "").split(os.pathsep))
+    files = (Path(folder) / f"{name}.yaml" for folder in folders)
+    return next((file for file in files if file.is_file()), None)
+
+
 def find_motor(name: str, where: str = "motors", field: str = "") -> Motor:
     """A motor by name, or of a file `PATH/NAME.yaml`.
 

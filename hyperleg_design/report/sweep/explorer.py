@@ -15,7 +15,6 @@ from hyperleg_design.report.sweep.rows import base_level, base_value, thinned
 from hyperleg_design.robot.kinematics.posture import default_angles, link_poses, lowest_point
 from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.parameters.described import RobotDesign
-from hyperleg_design.sweep.spaces.axis import Axis
 from hyperleg_design.sweep.spaces.definition import Map, Sweep
 from hyperleg_design.sweep.trial_table import view_command
 

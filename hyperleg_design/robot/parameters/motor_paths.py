@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -22,22 +23,29 @@ def with_motor_paths(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     Returns:
         The same with such paths replaced; values of any other kind are left to later checks.
     """
-    replaced = dict(data)
-    for name in SECTIONS:
-        section = data.get(name)
-        if isinstance(section, Mapping):
-            replaced[name] = {
-                part: _part(entry, folder) if isinstance(entry, Mapping) else entry
-                for part, entry in section.items()
-            }
-    return replaced
+    named = {name: copy.deepcopy(data[name]) for name in SECTIONS if name in data}
+    for section, key in motor_places(named):
+        section[key] = path_from_here(section[key], folder)
+    return {**data, **named}
 
 
-def _part(entry: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    motor = entry.get("motor")
-    if isinstance(motor, Mapping):
-        return {**entry, "motor": {**motor, "value": path_from_here(motor.get("value"), folder)}}
-    return {**entry, "motor": path_from_here(motor, folder)} if "motor" in entry else dict(entry)
+def motor_places(data: dict[str, Any]) -> list[tuple[dict[str, Any], str]]:
+    """List where a design names its motors.
+
+    Args:
+        data: what its file holds, nested.
+
+    Returns:
+        Mappings within `data` and the keys in them that hold the names.
+    """
+    places = []
+    for key, value in data.items():
+        inner = isinstance(value, dict)
+        if str(key).split("_")[-1] == "motor" and (not inner or "value" in value):
+            places.append((value, "value") if inner else (data, key))
+        elif inner:
+            places += motor_places(value)
+    return places
 
 
 def path_from_here(named: Any, folder: Path) -> Any:
