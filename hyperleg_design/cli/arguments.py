@@ -9,10 +9,18 @@ from typing import Any
 
 from hyperleg_design.errors import InputError
 
+LARGEST = 2**63 - 1
+"""Largest value of any number, such as a seed: that of a signed integer of 64 bits, in which torch
+and NumPy compute.
+"""
+
 
 @dataclass(frozen=True)
 class AtLeast:
-    """Lower bound of a number, written beside its type: `Annotated[int, AtLeast(1)]`."""
+    """Lower bound of a number, written beside its type: `Annotated[int, AtLeast(1)]`.
+
+    No number may exceed `LARGEST`.
+    """
 
     low: float
     """Smallest value that is allowed, or the value that it must exceed."""
@@ -26,13 +34,23 @@ class AtLeast:
             value: the option's value.
 
         Returns:
-            True for a finite value on or above the bound (above it, where the bound is exclusive).
+            True for a finite value on or above the bound (above it, where the bound is exclusive)
+            and not above `LARGEST`.
         """
-        return math.isfinite(value) and (value > self.low if self.exclusive else value >= self.low)
+        above = value > self.low if self.exclusive else value >= self.low
+        return above and value <= LARGEST and math.isfinite(value)
 
-    @property
-    def remedy(self) -> str:
-        """What an error says would be right."""
+    def remedy(self, value: float) -> str:
+        """Write what would be right.
+
+        Args:
+            value: that is not admitted.
+
+        Returns:
+            The remedy of an error.
+        """
+        if value > LARGEST and not (isinstance(value, float) and math.isinf(value)):
+            return f"expects a number of at most {LARGEST}"
         return f"expects a number {'above' if self.exclusive else 'of at least'} {self.low:g}"
 
 
@@ -64,4 +82,4 @@ def check_bounds(command: Any) -> None:
             check_bounds(value)
         for bound in getattr(hints[field.name], "__metadata__", ()):
             if isinstance(bound, AtLeast) and value is not None and not bound.admits(value):
-                raise InputError("arguments", option(field.name), value, bound.remedy)
+                raise InputError("arguments", option(field.name), value, bound.remedy(value))

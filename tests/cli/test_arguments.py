@@ -42,6 +42,9 @@ def test_what_is_within_bounds_passes_and_an_option_that_is_left_out_is_no_numbe
     [
         (Command(worker_count=0), ["--worker-count = 0", "at least 1"]),
         (Command(budget=-1.0), ["--budget = -1.0", "at least 0"]),
+        (Command(worker_count=10**20), ["--worker-count = 1000", "at most 9223372036854775807"]),
+        (Command(worker_count=10**400), ["--worker-count = ", "at most 9223372036854775807"]),
+        (Command(budget=float("inf")), ["--budget = inf", "at least 0"]),
         (Command(inner=Inner(rate=0.0)), ["--rate = 0.0", "above 0"]),
     ],
 )
