@@ -35,6 +35,7 @@ from hyperleg_design.sweep.searching.constraint import (
 from hyperleg_design.sweep.searching.study_database import (
     DATABASE,
     OWN,
+    OWNER,
     clear_errors,
     open_study,
     owner_of,
@@ -45,7 +46,7 @@ from hyperleg_design.sweep.spaces.definition import Sweep
 from hyperleg_design.sweep.trial_runs import BATCH, evaluate_values
 from hyperleg_design.sweep.trial_table import design_table
 from hyperleg_design.sweep.trials.trial_plan import Plan, kind_of
-from hyperleg_design.writing import plain
+from hyperleg_design.writing import MARKER, check_output_folder, plain
 
 if TYPE_CHECKING:
     import optuna
@@ -160,12 +161,14 @@ def run_search(
 
     Raises:
         InputError: the database refuses, or a policy does not fit.
-        OutputError: the database holds another search under this name.
+        OutputError: the folder holds something else, or the database another search under this
+            name.
     """
     import optuna
     from tqdm import tqdm
 
     folder = Path(out)
+    _check(folder)
     if not storage:  # the database lies in the folder
         _make(folder)
     url = storage or f"sqlite:///{(folder / DATABASE).resolve()}"
@@ -197,9 +200,21 @@ def run_search(
     return study
 
 
+def _check(folder: Path) -> None:
+    """Refuse a folder that holds anything but a search; older ones have no marker."""
+    if (folder / OWNER).is_file():
+        return
+    folder = check_output_folder(folder)
+    if folder.is_dir() and {entry.name for entry in folder.iterdir()} - {MARKER, DATABASE}:
+        raise OutputError(
+            f"{folder}: holds a result of hyperleg that is no search; choose an empty or new folder"
+        )
+
+
 def _make(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        (folder / MARKER).touch()
     except OSError as error:
         raise OutputError(
             f"{folder}: cannot be made ({error.strerror}); choose another --out"
@@ -281,9 +296,12 @@ def _tell(
 
     trial.set_user_attr(ROW, plain(row))
     values = [float(row.get(name, np.nan)) for name in search.objectives]
+    violations: dict[str, float] = {}  # the largest, where a measure has several bounds
     for constraint in search.constraints:
         violation = constraint.violation(float(row.get(constraint.name, np.nan)))
-        trial.set_constraint(constraint.name, min(violation, 1e6))
+        violations[constraint.name] = max(violation, violations.get(constraint.name, -np.inf))
+    for measure, violation in violations.items():
+        trial.set_constraint(measure, min(violation, 1e6))
     refused = reason or next((str(row[k]) for k in row if k.endswith(".reason") and row[k]), "")
     if not refused and not np.isfinite(values).all():
         lost = [n for n, v in zip(search.objectives, values, strict=True) if not np.isfinite(v)]

@@ -18,6 +18,7 @@ from hyperleg_design.sweep.measuring import measures
 from hyperleg_design.sweep.search import found_designs, run_search, search_of
 from hyperleg_design.sweep.space import sweep_from_mapping
 from hyperleg_design.sweep.trials.trial_plan import plan
+from hyperleg_design.writing import MARKER
 
 optuna = pytest.importorskip("optuna")
 
@@ -83,6 +84,18 @@ def test_the_front_holds_the_constraints_and_nothing_beats_it(tmp_path):
         assert row["push_off_heat"] == pytest.approx(own["push_off_heat"][0], rel=1e-9)
 
 
+def test_two_bounds_of_one_measure_both_hold(tmp_path):
+    sweep = sweep_from_mapping(SPACE)
+    bounds = ["total_mass>=32.5", "total_mass<=99", "total_mass>=0"]
+    search = search_of(sweep, plan(sweep, []), constraints=bounds)
+    study = run_search(search, tmp_path, 8, progress=False)
+    masses = trial_frame(study)["total_mass"]
+    assert {row["total_mass"] for row in found_designs(search, study)} <= set(
+        masses[masses >= 32.5]
+    )
+    assert masses.min() < 32.5
+
+
 def test_an_impossible_corner_fails_and_says_why(tmp_path):
     """A foot as long as the leg."""
     axes = SPACE["axes"] | {"foot.ball_length": {"low": 0.4, "high": 0.6}}
@@ -132,14 +145,28 @@ def test_a_database_that_refuses_or_is_corrupt_is_one_clear_error(tmp_path):
     with pytest.raises(InputError, match=r"--storage.*does not serve") as caught:
         run_search(small(), tmp_path, 1, storage=url, progress=False)
     assert "secret" not in str(caught.value)
+    (tmp_path / MARKER).touch()
     (tmp_path / "study.db").write_bytes(b"no database at all" * 100)
     with pytest.raises(InputError, match="does not serve"):
         run_search(small(), tmp_path, 1, progress=False)
 
 
+def test_a_foreign_folder_is_left_alone_and_an_older_search_goes_on(tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(OutputError, match="did not write"):
+        run_search(small(), tmp_path, 1, progress=False)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["notes.txt"]
+    (tmp_path / MARKER).touch()
+    with pytest.raises(OutputError, match="is no search"):
+        run_search(small(), tmp_path, 1, progress=False)
+    run_search(small(), tmp_path / "out", 1, progress=False)
+    (tmp_path / "out" / MARKER).unlink()
+    assert len(run_search(small(), tmp_path / "out", 2, progress=False).trials) == 2
+
+
 def test_a_folder_that_cannot_be_made_and_a_measure_that_is_not_there(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(OutputError, match=r"cannot be made.*--out"):
+    with pytest.raises(OutputError, match=r"is a file.*--out"):
         run_search(small(), tmp_path / "file" / "out", 1, progress=False)
     sweep = sweep_from_mapping(SPACE)
     with pytest.raises(InputError, match=r"did you mean max_joint_torque\.knee"):

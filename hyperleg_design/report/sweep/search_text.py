@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from hyperleg_design.report.sweep.violations import violations
 from hyperleg_design.report.text import table
 from hyperleg_design.sweep.finalists import Final, Row, holds_constraints, value_of
 from hyperleg_design.sweep.search import REASON, Search, found_designs
@@ -30,7 +31,7 @@ def search_text(search: Search, study: optuna.Study) -> str:
     lines += [f"  failed {count}: {reason}" for reason, count in reasons.most_common(5)]
     rows = found_designs(search, study)
     if not rows:
-        return "\n".join([*lines, "no design holds all constraints"])
+        return "\n".join([*lines, "no design holds all constraints", *violations(search, study)])
     axes = [axis.name for axis in search.sweep.axes]
     cells = [
         [

@@ -24,6 +24,11 @@ class Constraint:
     at_most: bool
     """Whether the measure must not be above the bound; else not below."""
 
+    @property
+    def text(self) -> str:
+        """The constraint as `read_constraint` reads it."""
+        return f"{self.name}{'<=' if self.at_most else '>='}{self.bound:.10g}"
+
     def violation(self, value: float) -> float:
         """Amount by which a value breaks the constraint; not positive where the constraint holds,
         infinite where the value is unknown.
@@ -57,10 +62,11 @@ def read_constraint(text: str, protocols: Sequence[str]) -> Constraint:
         if match is None:
             raise ValueError
         bound = float(match[3])
+        if not np.isfinite(bound):
+            raise ValueError
     except ValueError:
-        raise InputError(
-            "--constraint", "", text, "expects MEASURE<=NUMBER or MEASURE>=NUMBER"
-        ) from None
+        remedy = "expects MEASURE<=NUMBER or MEASURE>=NUMBER, the number finite"
+        raise InputError("--constraint", "", text, remedy) from None
     entry = registry.resolve(match[1], protocols, "--constraint")
     return Constraint(entry.name, bound, match[2] == "<=")
 

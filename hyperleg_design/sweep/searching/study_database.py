@@ -11,13 +11,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hyperleg_design.errors import InputError, OutputError
+from hyperleg_design.errors import InputError, OutputError, in_short
 
 if TYPE_CHECKING:
     import optuna
 
 DATABASE, OWNER = "study.db", "search.json"
 """Files beside the results: the database, and the name of those who search into the folder."""
+SQLITE = "sqlite:///"
+"""Beginning of the address of a database that is a file."""
 OWN = "owner"
 """Attribute of a trial: who runs it."""
 
@@ -40,7 +42,11 @@ def clear_errors(url: str) -> Iterator[None]:
     try:
         yield
     except (SQLAlchemyError, ImportError) as error:
-        reason = " ".join(str(error).split())[:160]
+        reason = in_short(getattr(error, "orig", None) or error, 160)
+        if url.startswith(SQLITE):
+            remedy = f"does not serve as a database ({reason}); choose another folder, or delete "
+            remedy += "this file where it is damaged"
+            raise InputError(url.removeprefix(SQLITE), "", None, remedy) from None
         raise InputError(
             "--storage", "", re.sub(r"//[^@/]*@", "//...@", url), f"does not serve: {reason}"
         ) from None

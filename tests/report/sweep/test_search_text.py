@@ -9,13 +9,14 @@ import pytest
 from hyperleg_design.report.sweep import search_text
 from hyperleg_design.sweep.finalists import Final, Finalist
 from hyperleg_design.sweep.search import REASON
+from hyperleg_design.sweep.searching.constraint import Constraint
 
 
 @pytest.fixture
 def search(monkeypatch):
     """A search of walks for a low cost; a design may fall in a tenth of its trials."""
     monkeypatch.setattr(search_text, "build_command", lambda sweep, row: f"build {row['sample']}")
-    bound = SimpleNamespace(name="walk.fell", violation=lambda value: value - 0.1)
+    bound = Constraint("walk.fell", 0.1, True)
     return SimpleNamespace(
         sweep=SimpleNamespace(axes=(SimpleNamespace(name="toe.mass"),)),
         objectives=("walk.cost",),

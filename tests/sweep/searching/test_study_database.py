@@ -53,6 +53,15 @@ def test_a_folder_keeps_its_owner_and_says_when_the_name_is_damaged(tmp_path):
         owner_of(tmp_path)
 
 
+def test_a_damaged_file_is_named_with_a_remedy(tmp_path):
+    (tmp_path / "study.db").write_text("no database at all" * 100)
+    with pytest.raises(InputError, match="delete this file where it is damaged") as caught:
+        opened(tmp_path)
+    assert str(caught.value).startswith(f"{tmp_path}/study.db: does not serve")
+    assert "sqlalche.me" not in str(caught.value)
+    assert "--storage" not in str(caught.value)
+
+
 def test_errors_hide_the_password_and_other_errors_pass():
     from sqlalchemy.exc import SQLAlchemyError
 
