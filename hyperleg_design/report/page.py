@@ -58,6 +58,13 @@ class Details:
 
 
 @dataclass(frozen=True)
+class Commands:
+    """Command lines to copy into a terminal."""
+
+    lines: Sequence[str]
+
+
+@dataclass(frozen=True)
 class Explorer:
     """Points that a reader sorts, filters and selects; `templates/explorer.js` shows them."""
 
@@ -80,8 +87,8 @@ class Section:
 
     title: str
     content: Sequence[Any] = ()
-    """Texts (paragraphs), `Heading`, `Table`, `Picture`, `Missing`, `Details`; a list of pictures
-    stands side by side."""
+    """Texts (paragraphs), `Heading`, `Table`, `Picture`, `Missing`, `Details`, `Commands`; a list
+    of pictures stands side by side."""
     anchor: str = ""
 
 

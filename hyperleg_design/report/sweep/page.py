@@ -8,7 +8,7 @@ import numpy as np
 
 from hyperleg_design.report.page import Details, Explorer, Page, Section, Table, render
 from hyperleg_design.report.sweep.explorer import explorer
-from hyperleg_design.report.sweep.rows import fronts_of
+from hyperleg_design.report.sweep.rows import fronts_of, without_variants
 from hyperleg_design.sweep.measuring import measures
 from hyperleg_design.writing import write_text
 
@@ -43,17 +43,9 @@ def sweep_content(result: SweepResult, name: str = "designs") -> list[Any]:
             [variant, measures.label(column), base.get(column), *values]
             for column, values in ranges.items()
         ]
-    content.append(
-        Details(
-            "Ranges of all measures",
-            [
-                Table(
-                    ["variant", "measure", "unchanged design", "smallest", "median", "largest"],
-                    rows,
-                )
-            ],
-        )
-    )
+    heads = ["variant", "measure", "unchanged design", "smallest", "median", "largest"]
+    table = Table(*without_variants(heads, rows))
+    content.append(Details("Ranges of all measures", [table]))
     return content
 
 
@@ -80,7 +72,8 @@ def _axes_text(result: SweepResult) -> str:
     axes = ", ".join(axis.name for axis in sweep.axes)
     front = result.summary.get("front", {})
     fronts = "; ".join(
-        f"{entry['designs']} on the front of {variant}" for variant, entry in front.items()
+        f"{entry['designs']} on the front" + (f" of {variant}" if sweep.has_variants else "")
+        for variant, entry in front.items()
     )
     text = (
         f"{result.summary['designs']} designs ({sweep.sampling}, seed "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from hyperleg_design.sweep.measuring.evaluate import Columns
 from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.run import SweepResult
 from hyperleg_design.sweep.spaces.axis import Axis
-from hyperleg_design.sweep.spaces.definition import Sweep
+from hyperleg_design.sweep.spaces.definition import AS_DESCRIBED, Sweep
 
 
 def fronts_of(result: SweepResult) -> tuple[Columns, dict[str, np.ndarray]]:
@@ -84,3 +85,25 @@ def base_level(axis: Axis, sweep: Sweep) -> Any:
     if not axis.numeric:
         return value if value in axis.levels else axis.levels[0]
     return min(axis.levels, key=lambda level: abs(level - value))
+
+
+def without_variants(
+    heads: Sequence[str], rows: Sequence[Sequence[Any]]
+) -> tuple[list[str], list[list[Any]]]:
+    """Leave the column `variant` out of a table of designs that have none.
+
+    Args:
+        heads: of the columns, `variant` among them.
+        rows: of cells.
+
+    Returns:
+        Heads and rows.
+    """
+    place = heads.index("variant")
+    if any(row[place] != AS_DESCRIBED for row in rows):
+        return list(heads), [list(row) for row in rows]
+    return _without(heads, place), [_without(row, place) for row in rows]
+
+
+def _without(cells: Sequence[Any], place: int) -> list[Any]:
+    return [*cells[:place], *cells[place + 1 :]]

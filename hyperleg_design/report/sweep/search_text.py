@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from hyperleg_design.report.sweep.rows import without_variants
 from hyperleg_design.report.sweep.violations import violations
 from hyperleg_design.report.text import table
 from hyperleg_design.sweep.finalists import Final, Row, holds_constraints, value_of
@@ -45,7 +46,7 @@ def search_text(search: Search, study: optuna.Study) -> str:
     heads = ["design", "variant", *axes, *search.objectives, "policy is"]
     note = "candidates, in the order of the first objective"
     note += "; their values are the best of many" if search.plan.protocols else ""
-    return "\n".join([*lines, table(heads, cells), note])
+    return "\n".join([*lines, table(*without_variants(heads, cells)), note])
 
 
 def final_text(search: Search, final: Final) -> str:

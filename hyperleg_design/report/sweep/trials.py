@@ -7,19 +7,23 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING, Any
 
-from hyperleg_design.report.page import Details, Explorer, Page, Section, Table, render
+from hyperleg_design.report.page import Commands, Details, Explorer, Page, Section, Table, render
 from hyperleg_design.report.sweep.explorer import explorer
 from hyperleg_design.report.sweep.page import sweep_content
+from hyperleg_design.report.sweep.rows import without_variants
 from hyperleg_design.report.sweep.trials_text import (
     best_text,
     design_cells,
     design_heads,
+    falls_table,
+    no_walk_text,
     policies_of,
     policy_kind,
     policy_text,
     unsimulated_text,
     with_interval,
 )
+from hyperleg_design.report.text import table as text_table
 from hyperleg_design.sweep import registry
 from hyperleg_design.sweep.spaces.definition import Map, Sweep
 from hyperleg_design.sweep.trial_runs import TRIALS
@@ -87,18 +91,20 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
             ],
         },
     )
+    policies = [policy_text(trials), *_policy_table(sweep, designs, protocols)]
     sections = [
-        Section("Policies", [policy_text(trials), *_policy_table(sweep, designs, protocols)]),
+        Section("Policies", [*policies, Table(*falls_table(trials))]),
         Section("Measures over the parameters", [_explorer(sweep, designs, fronts, "evaluated")]),
         Section("Limits that act", [_limits(designs, protocols)]),
         Section("Which parameter each measure follows", [_sensitivity_table(followed)]),
-        Section("Pareto front", _front_tables(sweep, fronts, objectives)),
-        Section("Best designs", _best_tables(sweep, chosen, commands, objectives)),
+        Section("Pareto front", _front_tables(sweep, designs, fronts, objectives)),
+        Section("Best designs", _best_tables(sweep, designs, chosen, commands, objectives)),
         Section("Sizing measures", sweep_content(result)),
     ]
+    described = f"{sweep.description.removesuffix('.')}. " if sweep.description else ""
     page = Page(
         title=f"Sweep {sweep.name}",
-        lead=f"{sweep.description} Every design is evaluated: {', '.join(protocols)}.",
+        lead=f"{described}Every design is evaluated: {', '.join(protocols)}.",
         sections=sections,
         provenance={**result.summary["versions"], "commit": result.summary["commit"]},
     )
@@ -108,7 +114,12 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
         "rejected": result.summary["rejected"],
         "rejected_because": result.summary["rejected_because"],
         "files": [str(folder / name) for name in (TRIALS, DESIGNS, SUMMARY)] + [str(target)],
-        "text": unsimulated_text(trials) + best_text(sweep, chosen, objectives, commands),
+        "text": unsimulated_text(trials)
+        + (
+            best_text(sweep, chosen, objectives, commands)
+            if len(chosen)
+            else f"{no_walk_text(designs)}\n{text_table(*falls_table(trials))}"
+        ),
     }
 
 
@@ -137,7 +148,7 @@ def evaluated_content(
         Details(
             "Best designs, limits that act, and which parameter each measure follows",
             [
-                *_best_tables(sweep, chosen, commands, objectives),
+                *_best_tables(sweep, designs, chosen, commands, objectives),
                 _limits(designs, [p for p in registry.PROTOCOLS if f"{p}.trials" in designs]),
                 _sensitivity_table(_followed(sweep, designs)),
             ],
@@ -184,12 +195,9 @@ def _policy_table(sweep: Sweep, designs: pd.DataFrame, protocols: list[str]) -> 
             [protocol, str(row["variant"]), f"sample {row['sample']}: {row[f'{protocol}.reason']}"]
             for _, row in lost.iterrows()
         ]
-    return [
-        Table(
-            ["protocol", "variant", "designs evaluated", "of these fall in most trials"],
-            [[*row, *[""] * (4 - len(row))] for row in rows],
-        )
-    ]
+    heads = ["protocol", "variant", "designs evaluated", "of these fall in most trials"]
+    padded = [[*row, *[""] * (4 - len(row))] for row in rows]
+    return [Table(*without_variants(heads, padded))]
 
 
 def _explorer(sweep: Sweep, designs: pd.DataFrame, fronts: pd.DataFrame, name: str) -> Explorer:
@@ -218,7 +226,8 @@ def _limits(designs: pd.DataFrame, protocols: list[str]) -> Table:
         "of squared torque passes the rated torque's. Speed: a motor passes 95 % of its no-load "
         "speed."
     )
-    return Table(["protocol", "variant", "limits that act", "designs"], rows, caption)
+    heads = ["protocol", "variant", "limits that act", "designs"]
+    return Table(*without_variants(heads, rows), caption)
 
 
 def _sensitivity_table(followed: list[dict[str, Any]]) -> Table:
@@ -240,12 +249,14 @@ def _sensitivity_table(followed: list[dict[str, Any]]) -> Table:
         "over all designs. Effect: change over the parameter's whole range; the first parameter of "
         "a measure limits it most."
     )
-    return Table(headers, rows, caption)
+    return Table(*without_variants(headers, rows), caption)
 
 
-def _front_tables(sweep: Sweep, fronts: pd.DataFrame, objectives: tuple[str, ...]) -> list[Any]:
+def _front_tables(
+    sweep: Sweep, designs: pd.DataFrame, fronts: pd.DataFrame, objectives: tuple[str, ...]
+) -> list[Any]:
     if fronts.empty:
-        return ["No design walks without falling more often than in one of 20 trials."]
+        return [no_walk_text(designs)]
     rows = [
         [
             *design_cells(sweep, row),
@@ -267,22 +278,29 @@ def _front_tables(sweep: Sweep, fronts: pd.DataFrame, objectives: tuple[str, ...
 
 
 def _best_tables(
-    sweep: Sweep, chosen: pd.DataFrame, commands: list[str], objectives: tuple[str, ...]
+    sweep: Sweep,
+    designs: pd.DataFrame,
+    chosen: pd.DataFrame,
+    commands: list[str],
+    objectives: tuple[str, ...],
 ) -> list[Any]:
     if chosen.empty:
-        return ["No design walks."]
+        return [no_walk_text(designs)]
     rows = [
         [
             registry.label(row["by"]),
             *design_cells(sweep, row),
             *(with_interval(row, name) for name in objectives),
             policy_kind(row),
-            command,
         ]
-        for (_, row), command in zip(chosen.iterrows(), commands, strict=True)
+        for _, row in chosen.iterrows()
     ]
-    heads = ["best by", *design_heads(sweep), *map(registry.label, objectives)]
-    return [Table([*heads, "policy is", "build this one"], rows)]
+    heads = ["best by", *design_heads(sweep), *map(registry.label, objectives), "policy is"]
+    builds = {  # a design that is among the best by several objectives, once
+        f"{command}  # sample {int(row['sample'])}": None
+        for (_, row), command in zip(chosen.iterrows(), commands, strict=True)
+    }
+    return [Table(heads, rows), "Commands that build these designs:", Commands(list(builds))]
 
 
 def _plain(designs: pd.DataFrame, columns: list[str]) -> list[dict[str, Any]]:

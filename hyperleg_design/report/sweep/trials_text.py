@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.report.text import table as text_table
-from hyperleg_design.sweep.spaces.definition import Sweep
+from hyperleg_design.sweep import registry
+from hyperleg_design.sweep.spaces.definition import AS_DESCRIBED, Sweep
 from hyperleg_design.sweep.trial_runs import REJECTED
+from hyperleg_design.sweep.trial_table import MOST_FALLS, walks
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -50,7 +52,7 @@ def policy_text(trials: pd.DataFrame) -> str:
         The text.
     """
     parts = [
-        f"{row['protocol']}, {row['variant']}: {row['designs']} designs {row['trained']} "
+        f"{_named(row)}: {row['designs']} designs {row['trained']} "
         f"({len(row['policies'])} {'policy' if len(row['policies']) == 1 else 'policies'})"
         for row in policies_of(trials)
     ]
@@ -60,6 +62,12 @@ def policy_text(trials: pd.DataFrame) -> str:
         "trained for the design may do better on it. Measures are over the trials that did not "
         "fall; intervals over policies and trials."
     )
+
+
+def _named(row: dict[str, Any]) -> str:
+    if row["variant"] == AS_DESCRIBED:
+        return str(row["protocol"])
+    return f"{row['protocol']}, {row['variant']}"
 
 
 def unsimulated_text(trials: pd.DataFrame) -> str:
@@ -76,6 +84,48 @@ def unsimulated_text(trials: pd.DataFrame) -> str:
     return "".join(f"{count} cannot be simulated: {reason}\n" for reason, count in counts.items())
 
 
+def no_walk_text(designs: pd.DataFrame) -> str:
+    """Say why no design of a sweep is on a front or among the best, and what to change.
+
+    Args:
+        designs: one row for each design, of `design_table`.
+
+    Returns:
+        The rule, the design that is nearest to it, and the options that change what counts.
+    """
+    if walks(designs).any():
+        return "No design that seldom falls has a value for every objective."
+    falls = designs[[f"{p}.fell" for p in registry.PROTOCOLS if f"{p}.fell" in designs]]
+    worst = falls.max(axis=1, skipna=False)
+    if not worst.notna().any():
+        return "No design could be simulated under every protocol."
+    least = int(np.nanargmin(worst.to_numpy(float)))
+    return (
+        f"No design falls in at most {100 * MOST_FALLS:g} % of its trials, those of all its "
+        f"policies counted together, so that there is no front and no best design. Sample "
+        f"{designs['sample'].iloc[least]} falls least often, in {100 * worst.iloc[least]:.0f} %. "
+        f"--policies and --seeds choose the policies; hyperleg search takes another bound, such "
+        f"as --constraint '{falls.columns[0]}<=0.3'."
+    )
+
+
+def falls_table(trials: pd.DataFrame) -> tuple[list[str], list[list[Any]]]:
+    """Count the falls of each policy, over all designs.
+
+    Args:
+        trials: of `run_trials`.
+
+    Returns:
+        Heads, and a row for each policy.
+    """
+    run = trials[trials["trial"] >= 0]
+    rows: list[list[Any]] = []
+    for (protocol, policy), own in run.groupby(["protocol", "policy"], sort=False):
+        fell = int((own["fell"] > 0).sum())
+        rows.append([protocol, policy, len(own), fell, 100 * fell / len(own)])
+    return ["protocol", "policy", "trials", "falls", "falls [%]"], rows
+
+
 def best_text(
     sweep: Sweep, chosen: pd.DataFrame, objectives: tuple[str, ...], commands: list[str]
 ) -> str:
@@ -83,15 +133,13 @@ def best_text(
 
     Args:
         sweep: the definition.
-        chosen: rows of the best designs.
+        chosen: rows of the best designs, at least one.
         objectives: names of the measures.
         commands: that build the designs.
 
     Returns:
         The text.
     """
-    if chosen.empty:
-        return "no design walks without falling"
     firsts = chosen.drop_duplicates("by")
     rows = [
         [
@@ -103,7 +151,7 @@ def best_text(
         for _, row in firsts.iterrows()
     ]
     heads = ["best by", *design_heads(sweep), *objectives, "policy is"]
-    build = [f"build this one: {commands[int(i)]}" for i in firsts.index]
+    build = dict.fromkeys(f"build this one: {commands[int(i)]}" for i in firsts.index)
     return "\n".join([text_table(heads, rows), *build])
 
 
@@ -114,9 +162,10 @@ def design_heads(sweep: Sweep) -> list[str]:
         sweep: the definition.
 
     Returns:
-        Sample, variant and the labels of the axes.
+        Sample, variant where there are any, and the labels of the axes.
     """
-    return ["sample", "variant", *(axis.label for axis in sweep.axes)]
+    variant = ["variant"] if sweep.has_variants else []
+    return ["sample", *variant, *(axis.label for axis in sweep.axes)]
 
 
 def design_cells(sweep: Sweep, row: Any) -> list[Any]:
@@ -127,12 +176,12 @@ def design_cells(sweep: Sweep, row: Any) -> list[Any]:
         row: of the table of designs.
 
     Returns:
-        Sample, variant and the values of the axes.
+        As `design_heads`: sample, variant where there are any, and the values of the axes.
     """
     values = [row[axis.name] for axis in sweep.axes]
     return [
         int(row["sample"]),
-        str(row["variant"]),
+        *([str(row["variant"])] if sweep.has_variants else []),
         *(float(f"{v:.4g}") if isinstance(v, float) else str(v) for v in values),
     ]
 

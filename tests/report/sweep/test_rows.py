@@ -10,7 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.report.sweep.rows import base_level, base_value, fronts_of, thinned
+from hyperleg_design.report.sweep.rows import (
+    base_level,
+    base_value,
+    fronts_of,
+    thinned,
+    without_variants,
+)
 from hyperleg_design.sweep.spaces.axis import Axis
 
 
@@ -74,3 +80,9 @@ def test_each_variant_has_a_front_of_its_own():
 def test_without_any_front_the_objectives_are_named():
     with pytest.raises(InputError, match=r"a\.yaml: objectives .*no design has all"):
         fronts_of(result_of([("toe", np.nan, 1.0)]))
+
+
+def test_a_column_of_variants_stands_only_where_there_are_some():
+    heads, rows = ["a", "variant", "b"], [[1, "as_described", 2]]
+    assert without_variants(heads, rows) == (["a", "b"], [[1, 2]])
+    assert without_variants(heads, [[1, "toe", 2]]) == (heads, [[1, "toe", 2]])

@@ -78,7 +78,7 @@ def test_kinds_of_policies_are_named_once(kinds, outside, text):
 
 def test_the_best_design_by_each_objective_comes_with_its_command():
     axes = (SimpleNamespace(name="toe.mass", label="toe.mass [kg]"),)
-    sweep = SimpleNamespace(axes=axes)
+    sweep = SimpleNamespace(axes=axes, has_variants=True)
     rows = [
         {"by": "cost", "sample": 4.0, "variant": "toe", "toe.mass": 0.123456, "cost": 0.4},
         {"by": "cost", "sample": 2.0, "variant": "toe", "toe.mass": 0.2, "cost": 0.5},
@@ -93,6 +93,27 @@ def test_the_best_design_by_each_objective_comes_with_its_command():
         "build this one: one",
         "build this one: two",
     ]
-    assert trials_text.best_text(sweep, chosen[:0], ("cost",), []) == (
-        "no design walks without falling"
-    )
+
+
+def test_where_no_design_walks_the_rule_and_the_falls_of_each_policy_are_told():
+    designs = pd.DataFrame({"sample": [0, 1, 2], "walk.fell": [0.5, 0.25, np.nan]})
+    text = trials_text.no_walk_text(designs)
+    assert "No design falls in at most 5 % of its trials" in text
+    assert "Sample 1 falls least often, in 25 %." in text
+    assert "--constraint 'walk.fell<=0.3'" in text
+    nothing = trials_text.no_walk_text(designs[2:])
+    assert nothing == "No design could be simulated under every protocol."
+    assert "has a value" in trials_text.no_walk_text(designs.assign(**{"walk.fell": 0.0}))
+    rows = {"trial": [0, 1, 0, -1], "protocol": "walk", "policy": ["a", "a", "b", ""]}
+    trials = pd.DataFrame(rows | {"fell": [1.0, 0.0, 0.0, np.nan]})
+    assert trials_text.falls_table(trials)[1] == [
+        ["walk", "a", 2, 1, 50.0],
+        ["walk", "b", 1, 0, 0.0],
+    ]
+
+
+def test_designs_without_variants_have_no_cell_of_one():
+    sweep = SimpleNamespace(axes=(), has_variants=False)
+    row = pd.Series({"sample": 4, "variant": "as_described"})
+    assert trials_text.design_cells(sweep, row) == [4]
+    assert trials_text.design_heads(sweep) == ["sample"]
