@@ -91,7 +91,7 @@ def draw(scene: Scene, path: Path) -> None:
     plotter.enable_parallel_projection()
     plotter.camera.parallel_scale = scene.height / 2
     plotter.enable_anti_aliasing("ssaa")
-    plotter.screenshot(str(path.with_suffix(".png")))
+    plotter.screenshot(str(path.with_suffix(".png")), transparent_background=True)
     path.with_suffix(".png").replace(path)
 
 
