@@ -230,6 +230,20 @@ T_TEST = {
 """Measures of the T-test protocol, over the whole run; besides them `waypoint_1`, `waypoint_2` and
 so on, the times of arrival [s]."""
 
+SHARES = frozenset(OUTCOMES) | {
+    "alternation",
+    "double_support",
+    "duty_factor",
+    "event_order",
+    "flight",
+    "heel_off",
+    "heel_or_flat",
+    "limit_share",
+    "single_support",
+    "stop_share",
+}
+"""Measures that lie in 0 .. 1: of trials, time, steps, contacts or strides."""
+
 
 def measure_of(name: str) -> Measure:
     """Look up a measure of either protocol.

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from hyperleg_design.evaluation.measure_interval import measure_interval
 from hyperleg_design.evaluation.measures import OUTCOMES, measure_of
 from hyperleg_design.evaluation.result import by_checkpoint, counted
 from hyperleg_design.evaluation.result_tables import trial_table
-from hyperleg_design.evaluation.statistics import Estimate, estimate, share
+from hyperleg_design.evaluation.statistics import Estimate
 from hyperleg_design.report.text import table
 from hyperleg_design.writing import plain
 
@@ -57,13 +58,8 @@ def evaluation_rows(evaluations: Sequence[Evaluation]) -> list[dict[str, Any]]:
     for (protocol, variant, design, trained), part in trials.groupby(keys, sort=False):
         first = next(e for e in evaluations if e.protocol.name == protocol)
         for measure in first.measures[0]:
-            interval = (share if measure in OUTCOMES else estimate)(
-                list(
-                    by_checkpoint(
-                        part.assign(**{measure: counted(part, measure)}), measure
-                    ).values()
-                )
-            )
+            values = by_checkpoint(part.assign(**{measure: counted(part, measure)}), measure)
+            interval = measure_interval(measure, list(values.values()))
             rows.append(
                 {
                     "variant": str(variant),

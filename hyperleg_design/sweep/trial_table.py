@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hyperleg_design.evaluation.measures import OUTCOMES
+from hyperleg_design.evaluation.measure_interval import measure_interval
 from hyperleg_design.evaluation.result import counted
-from hyperleg_design.evaluation.statistics import estimate, share
 from hyperleg_design.robot.load import design_argument
 from hyperleg_design.robot.motors import folder_option
 from hyperleg_design.sweep import registry
@@ -102,8 +101,7 @@ def _of_protocol(protocol: str, part: pd.DataFrame) -> dict[str, Any]:
             continue
         groups = [own.to_numpy(float) for _, own in counted(part, name).groupby(part["seed"])]
         if name in SHOWN[protocol]:
-            function = share if name in OUTCOMES else estimate
-            interval = function(groups, resamples=_RESAMPLES)
+            interval = measure_interval(name, groups, resamples=_RESAMPLES)
             row |= {name: interval.mean, f"{name}.low": interval.low, f"{name}.high": interval.high}
         else:
             real = [g[np.isfinite(g)] for g in groups if np.isfinite(g).any()]

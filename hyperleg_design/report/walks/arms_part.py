@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.evaluation import statistics
+from hyperleg_design.evaluation.measure_interval import measure_interval
 from hyperleg_design.evaluation.measures import measure_of
 from hyperleg_design.evaluation.plans.analysis_plan import counted
 from hyperleg_design.evaluation.result import by_checkpoint
@@ -52,7 +53,7 @@ def _table(evaluated: Evaluated, group: str, measures: tuple[str, ...]) -> Table
         row: list[Any] = [name.replace("_", " "), measure_of(name).unit]
         for design in designs:
             seeds = by_checkpoint(values[values["variant"] == design], name)
-            row.append(short(statistics.estimate(list(seeds.values()))))
+            row.append(short(measure_interval(name, list(seeds.values()))))
         rows.append(row)
     counts = (
         f"{d}: seeds {', '.join(map(str, evaluated.seeds(group, d)))}, "
