@@ -115,11 +115,34 @@ def write_json(path: str | os.PathLike[str], content: object) -> Path:
     return write_text(path, text + "\n")
 
 
-def check_output_folder(folder: str | os.PathLike[str]) -> Path:
+def check_output_file(path: str | os.PathLike[str]) -> None:
+    """Check that a file may be written, before work is done for it.
+
+    Args:
+        path: of the file.
+
+    Raises:
+        OutputError: it is a folder, or nothing can be written where it would stand.
+    """
+    path = Path(path)
+    if path.is_dir():
+        raise OutputError(f"{path}: is a folder; give the name of a file")
+    place = next(parent for parent in path.absolute().parents if parent.exists())
+    try:
+        with tempfile.TemporaryFile(dir=place):
+            pass
+    except OSError as error:
+        raise OutputError(
+            f"{path}: cannot be written ({error.strerror or error}); choose another folder"
+        ) from None
+
+
+def check_output_folder(folder: str | os.PathLike[str], option: str = "--out") -> Path:
     """Check that a folder may be written: it is missing, empty, or one of ours (it holds `MARKER`).
 
     Args:
         folder: to be written.
+        option: that names it, for the error.
 
     Returns:
         Its absolute path.
@@ -131,17 +154,17 @@ def check_output_folder(folder: str | os.PathLike[str]) -> Path:
     try:
         folder = Path(folder).resolve()
         if folder.exists() and not folder.is_dir():
-            raise OutputError(f"{folder}: is a file, not a folder; choose another --out")
+            raise OutputError(f"{folder}: is a file, not a folder; choose another {option}")
         place = next(p for p in (folder, *folder.parents) if p.exists())
         if not place.is_dir():
-            raise OutputError(f"{place}: is a file, not a folder; choose another --out")
+            raise OutputError(f"{place}: is a file, not a folder; choose another {option}")
         if not os.access(place, os.W_OK | os.X_OK):
-            raise OutputError(f"{place}: is closed to writing; choose another --out")
+            raise OutputError(f"{place}: is closed to writing; choose another {option}")
         foreign = folder.is_dir() and not (folder / MARKER).is_file() and any(folder.iterdir())
     except (OSError, ValueError) as error:
         raise OutputError(
             f"{folder}: cannot be read ({getattr(error, 'strerror', None) or error}); choose "
-            f"another --out"
+            f"another {option}"
         ) from error
     if foreign:
         raise OutputError(

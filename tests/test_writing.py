@@ -218,6 +218,13 @@ def test_a_place_below_a_file_or_closed_to_writing_is_told_before_any_work(tmp_p
     (tmp_path / "file").write_text("mine")
     with pytest.raises(OutputError, match=r"file: is a file"):
         writing.check_output_folder(tmp_path / "file" / "out")
+    with pytest.raises(OutputError, match="choose another --logs"):
+        writing.check_output_folder(tmp_path / "file", "--logs")
+    writing.check_output_file(tmp_path / "new" / "a.gif")
+    for place in ("file/a.gif", "."):
+        with pytest.raises(OutputError, match=r"cannot be written|is a folder"):
+            writing.check_output_file(tmp_path / place)
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
     monkeypatch.setattr(writing.os, "access", lambda place, mode: False)
     with pytest.raises(OutputError, match="closed to writing"):
         writing.check_output_folder(tmp_path / "out")

@@ -214,9 +214,9 @@ class Evaluate(Printing):
 
             overlay = read_overlay(self.overlay)
         check_different(map(find_policy, self.policies), "evaluate")
-        for folder in (self.out, self.logs, self.lerobot):
-            if folder is not None:
-                check_output_folder(folder)
+        for name in ("out", "logs", "lerobot"):
+            if (folder := getattr(self, name)) is not None:
+                check_output_folder(folder, f"--{name}")
         alterations: Alterations | None = overlay.alterations if overlay else None
         if self.swap:
             if overlay:

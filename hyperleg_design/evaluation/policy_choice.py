@@ -11,7 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.evaluation.shipped import Shipped, shipped_policies
+from hyperleg_design.evaluation.shipped import (
+    GOES_ON,
+    Shipped,
+    shipped_policies,
+    unfinished_trainings,
+)
 from hyperleg_design.robot.load import design_argument
 from hyperleg_design.robot.motors import folder_option
 from hyperleg_design.robot.trees.tree_design import TreeDesign
@@ -73,8 +78,8 @@ def policies_for(
         "policies",
         "",
         f"{kind}-{trained_names(design)[0]}",
-        f"no policy was trained for this task and {what}; there are {have}; "
-        f"{_remedy(kind, design)}",
+        f"no policy was trained for this task and {what}; "
+        + (_unfinished(kind, design, folder) or f"there are {have}; {_remedy(kind, design)}"),
     )
 
 
@@ -95,6 +100,14 @@ def trained_names(design: RobotDesign) -> tuple[str, ...]:
 
 def _stands_for(group: str, kind: str) -> bool:
     return group == kind or (group.startswith(kind) and not group.endswith(ONLY_STARTS))
+
+
+def _unfinished(kind: str, design: RobotDesign, folder: str | Path | None) -> str:
+    """That the training of such a policy is not finished; empty where there is none."""
+    begun = unfinished_trainings(folder) if folder is not None else []
+    names = trained_names(design)
+    own = [t.training for t in begun if t.design in names and _stands_for(t.group, kind)]
+    return f"{own[0]} is not finished; {GOES_ON}" if own else ""
 
 
 def _remedy(kind: str, design: RobotDesign) -> str:

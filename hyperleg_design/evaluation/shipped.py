@@ -39,6 +39,8 @@ CURVE_ROWS = 200
 """Rows of a packed learning curve."""
 CURVE = ("steps", "stage", "assist", "reward", "speed", "falls", "cost_of_transport")
 """Numbers of a row of a learning curve; `falls` a minute and robot, `assist` relative."""
+GOES_ON = "hyperleg train with the same --out goes on with it"
+"""Remedy for a training that is not finished."""
 _NAME = re.compile(r"(?P<group>[^.-][^-]*)-(?P<design>.+)-(?P<seed>\d+)")
 
 
@@ -143,6 +145,23 @@ def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> 
     )
 
 
+def unfinished_trainings(folder: str | Path) -> list[Shipped]:
+    """List the trainings of a folder that were begun and have no policy yet.
+
+    Args:
+        folder: of trainings.
+
+    Returns:
+        What will be their policies, by the trainings' names.
+    """
+    begun = []
+    for training in sorted(Path(folder).iterdir()):
+        name, policy = _NAME.fullmatch(training.name), training / POLICY
+        if name and (training / RUN).is_file() and not policy.is_file():
+            begun.append(Shipped(name["group"], name["design"], int(name["seed"]), 0, policy))
+    return begun
+
+
 def check_different(paths: Iterable[str | Path], where: str = "policies") -> None:
     """Check that no two files hold the same policy, which would count one training twice.
 
@@ -189,8 +208,7 @@ def find_policy(name: str | Path, where: str = "policy") -> Path:
     if (folder / POLICY).is_file():
         return folder / POLICY
     if (folder / "run.json").is_file():
-        remedy = "the training is not finished; hyperleg train with the same --out goes on with it"
-        raise InputError(where, "", str(name), remedy)
+        raise InputError(where, "", str(name), f"the training is not finished; {GOES_ON}")
     named = shipped_folder() / path / POLICY
     if len(path.parts) == 1 and named.is_file():
         return named

@@ -88,13 +88,15 @@ def checks_text(findings: list[dict[str, Any]]) -> str:
     """
     lines = []
     for entry in findings:
+        own = finding_lines(Finding(**f) for f in entry["findings"])
         verdict = (
-            "good"
-            if not entry["findings"]
-            else f"{_counted(entry['errors'], 'error')}, {_counted(entry['warnings'], 'warning')}"
+            f"{_counted(entry['errors'], 'error')}, {_counted(entry['warnings'], 'warning')}"
+            if own
+            else "good"
         )
+        verdict += ", equal ones in one line" if len(own) < len(entry["findings"]) else ""
         lines.append(f"{entry['path']}: {verdict}")
-        lines += [f"  {line}" for line in finding_lines(Finding(**f) for f in entry["findings"])]
+        lines += [f"  {line}" for line in own]
     return "\n".join(lines)
 
 

@@ -35,6 +35,11 @@ FIRST_READ = (
     "continuous_use",
 )
 """Measures that a terminal shows at first, of walks and T-tests, in this order."""
+OVERHEATS = (
+    "continuous_use above 1: the motor used most gives more than its rated torque (RMS), and "
+    "overheats where this goes on"
+)
+"""What a terminal says below a table in which a motor is used beyond its rated torque."""
 HEAD = ("measure", "unit", "mean", "low", "high", "seeds", "missing")
 
 
@@ -116,6 +121,8 @@ def evaluation_text(rows: Sequence[dict[str, Any]], *, everything: bool = False)
             f"{variant or design}, {trained}, {protocol}: {', '.join([count, *ends])}\n"
             + table(HEAD, [_cells(own[name]) for name in shown if name not in lacking])
         )
+        if "continuous_use" in shown and (own["continuous_use"]["mean"] or 0.0) > 1.0:
+            texts[-1] += f"\n{OVERHEATS}"
         if lacking:
             texts[-1] += f"\nwithout a value in any trial: {', '.join(lacking)}"
         if len(shown) < len(own):

@@ -128,10 +128,30 @@ def changed(
         InputError: names file, field, value and remedy.
     """
     for overlay in overlays:
-        path = resources.find("descriptions", overlay)
+        path = overlay_file(overlay)
         design = _overlaid(design, read_yaml(path), short_name(path))
     chosen = parse_overrides(overrides)
     return design.with_values(chosen, "--set") if chosen else design
+
+
+def overlay_file(name: str | Path) -> Path:
+    """Find a file of parameters that differ from a design's.
+
+    Args:
+        name: its path.
+
+    Returns:
+        The path.
+
+    Raises:
+        InputError: there is no such file.
+    """
+    try:
+        return resources.find("descriptions", name)
+    except InputError as error:
+        reason = error.remedy.split(";")[0]
+        remedy = f"{reason}; expects a YAML file with the parameters that differ"
+        raise InputError("--set-file", "", str(name), remedy) from None
 
 
 def design_from_mapping(data: Mapping[str, Any], where: str) -> Design:

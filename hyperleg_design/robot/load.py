@@ -18,6 +18,7 @@ from hyperleg_design.robot.design import (
     design_from_mapping,
     leaf_values,
     load_design,
+    overlay_file,
     parse_overrides,
 )
 from hyperleg_design.robot.parameters.described import RobotDesign
@@ -82,7 +83,7 @@ def changed_robot(
         return changed(design, overrides=overrides, overlays=overlays)
     tree = cast("TreeDesign", design)
     for overlay in overlays:
-        place = resources.find("descriptions", overlay)
+        place = overlay_file(overlay)
         tree = _overlaid(tree, read_yaml(place), short_name(place))
     chosen = parse_overrides(overrides)
     return tree.with_values(chosen, "--set") if chosen else tree

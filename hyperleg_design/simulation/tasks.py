@@ -177,12 +177,13 @@ class Task:
             missing = [joint for joint in joints if joint not in layout.own_joints]
             if missing or (set(joints) == set(human_gait.KNOTS) and layout.limbs != SIDES):
                 lacks = f"joints {', '.join(missing)}" if missing else "limbs left and right"
+                other = "t_test_any" if isinstance(self.commands, WaypointCommands) else "walk_any"
                 raise InputError(
                     f"task {self.name}",
                     place,
                     value,
                     f"is for robots with other joints: {robot} lacks {lacks}; leave it out, or use "
-                    f"a task for any walker such as walk_any",
+                    f"a task for any walker such as {other}",
                 )
 
     def draws_later(self, duration: float) -> bool:

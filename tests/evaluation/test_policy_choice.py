@@ -102,6 +102,15 @@ def test_a_robot_without_policies_is_told_how_to_train_one(kind, design, remedy)
         policies_for(kind, load_robot(design), 3)
 
 
+def test_a_training_that_is_not_finished_is_told(tmp_path):
+    (trained(tmp_path, "walk_any-rex-0", family="tree") / "walk_any-rex-0" / "policy.onnx").unlink()
+    rex = dataclasses.replace(QUADRUPED, name="rex")
+    with pytest.raises(InputError, match="walk_any-rex-0 is not finished; hyperleg train with"):
+        policies_for("walk", rex, 3, tmp_path)
+    with pytest.raises(InputError, match="--task t_test_any"):
+        policies_for("t_test", rex, 3, tmp_path)
+
+
 def test_a_robot_that_cannot_be_simulated_says_so_first():
     with pytest.raises(InputError, match=r"trunk\.motion = 'fixed': expects floating"):
         policies_for("walk", load_robot("teaching_leg"), 3)

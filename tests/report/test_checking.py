@@ -49,3 +49,15 @@ def test_every_file_is_checked_though_others_cannot_be(tmp_path):
     words = ("no such file", "is a folder", "does not reach in the posture hip_yaw 0 deg, ")
     for entry, word in zip(results, words, strict=False):
         assert word in checks_text([entry])
+
+
+def test_equal_findings_in_one_line_are_told_as_such():
+    findings = [
+        {"severity": "warning", "place": place, "message": "odd", "remedy": ""}
+        for place in ("joint left", "joint right")
+    ]
+    entry = {"path": "a.urdf", "errors": 0, "warnings": 2, "findings": findings}
+    assert checks_text([entry]).splitlines() == [
+        "a.urdf: 0 errors, 2 warnings, equal ones in one line",
+        "  warning: joint left, joint right: odd",
+    ]

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from hyperleg_design.report.evaluation_text import evaluation_text
+from hyperleg_design.report.evaluation_text import OVERHEATS, evaluation_text
 
 
 def row(measure, mean, *, unit="", missing=0, variant="toe", protocol="walk"):
@@ -65,3 +65,11 @@ def test_every_protocol_and_variant_has_a_table_of_its_own():
 def test_a_robot_without_variants_is_named():
     text = evaluation_text([row("arrived", 1.0, variant="")])
     assert text.startswith("hyperleg, specialist, walk: 10 trials, 10 arrived")
+
+
+def test_a_motor_beyond_its_rated_torque_is_told():
+    cool, hot = (
+        [row("arrived", 1.0), row("continuous_use", use, protocol="walk")] for use in (0.9, 1.328)
+    )
+    assert OVERHEATS in evaluation_text(hot)
+    assert OVERHEATS not in evaluation_text(cool)

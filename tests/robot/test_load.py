@@ -71,3 +71,10 @@ def test_a_base_that_is_nowhere_names_its_file_and_the_nearest(tmp_path, family)
     path.write_text(f"{family}base: 3\n")
     with pytest.raises(InputError, match=r"mine\.yaml: base"):
         load_robot(path)
+
+
+@pytest.mark.parametrize("design", ["toe", "mini_cheetah"])
+def test_a_set_file_that_is_not_there_is_named_as_one(design, tmp_path):
+    for name, reason in (("nosuch.yaml", "no such file"), (tmp_path, "is a folder")):
+        with pytest.raises(InputError, match=f"--set-file = '{name}': {reason}.*differ$"):
+            load_robot(design, overlays=[name])

@@ -14,7 +14,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.report.pictures.gif import gif_of
 from hyperleg_design.report.pictures.motion import Motion, drawn_frames
-from hyperleg_design.writing import write_bytes
+from hyperleg_design.writing import check_output_file, write_bytes
 
 KINDS = (".mp4", ".gif")
 """Endings of the files that can be written."""
@@ -34,6 +34,7 @@ def check_video(path: Path, size: tuple[int, int]) -> None:
 
     Raises:
         InputError: another ending than `KINDS`, an odd or very small size, or a package is missing.
+        OutputError: nothing can be written there.
     """
     if path.suffix.lower() not in KINDS:
         ending = " or ".join(KINDS)
@@ -48,6 +49,7 @@ def check_video(path: Path, size: tuple[int, int]) -> None:
             str(path),
             "needs imageio with ffmpeg: pip install 'hyperleg-design[video]', or name a .gif file",
         )
+    check_output_file(path)
 
 
 def write_video(motion: Motion, path: str | Path, *, progress: bool = False) -> Path:

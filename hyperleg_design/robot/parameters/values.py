@@ -122,7 +122,7 @@ def _checked_number(value: Any, rule: Rule, where: str, path: str) -> Any:
         raise InputError(where, path, value, f"expects {what}, finite")
     outside = (array < rule.low) | (array > rule.high)
     if np.any(outside):
-        worst = float(array[outside].flat[0]) if array.ndim else float(array)
+        worst = float(array[outside].flat[0]) if array.ndim else value
         raise InputError(
             where,
             path,

@@ -7,7 +7,7 @@ import io
 import numpy as np
 import pytest
 
-from hyperleg_design.errors import InputError
+from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.report.pictures import motion, video
 
 
@@ -58,6 +58,12 @@ def test_a_gif_holds_every_frame(drawn, tmp_path):
 def test_what_cannot_be_written_is_refused(name, size, text, tmp_path):
     with pytest.raises(InputError, match=text):
         video.write_video(shown(2, size), tmp_path / name)
+
+
+def test_a_place_that_is_closed_is_told_before_any_work(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="cannot be written"):
+        video.check_video(tmp_path / "file" / "a.gif", (128, 96))
 
 
 def test_a_missing_encoder_is_told(monkeypatch, tmp_path):

@@ -111,6 +111,8 @@ def test_what_is_no_vector_is_refused(value):
 def test_the_value_out_of_bounds_is_named():
     with pytest.raises(InputError, match=r"x = 5\.0.*0 \.\. 2; check unit and sign"):
         checked(np.array([1.0, 5.0, 1.0]), LENGTH, "f", "x")
+    with pytest.raises(InputError, match=r"x = 5: "):  # as it was written
+        checked(5, LENGTH, "f", "x")
 
 
 @given(st.floats(0, 2))
