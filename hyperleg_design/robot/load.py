@@ -96,11 +96,13 @@ def design_argument(design: RobotDesign) -> str:
         design: a robot or batch.
 
     Returns:
-        The name of a shipped design, else the name of the file that it was read from.
+        The name of a shipped design, else the file that it was read from: with its folder where
+        that lies in the working directory.
     """
     if design.name in resources.names("descriptions") or not design.source:
         return design.name
-    return Path(design.source).name
+    source = Path(design.source)
+    return str(source) if source.is_file() else source.name
 
 
 def robot_from_mapping(data: Mapping[str, Any], where: str) -> RobotDesign:

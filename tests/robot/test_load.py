@@ -23,7 +23,7 @@ def test_the_example_of_the_page_loads(tmp_path):
     assert transmission.joint_names(load_robot(path)) == ("hip", "knee")
 
 
-def test_a_file_may_build_on_another(tmp_path):
+def test_a_file_may_build_on_another(tmp_path, monkeypatch):
     path = tmp_path / "mine.yaml"
     path.write_text("base: mini_cheetah\nactuators: {knee: {gear: 8}}\n")
     design = load_robot(path)
@@ -32,6 +32,8 @@ def test_a_file_may_build_on_another(tmp_path):
     assert design_argument(design) == "mine.yaml"
     assert design_argument(design.with_values({"links.trunk.mass": 4.0})) == "mine.yaml"
     assert design_argument(load_robot("mini_cheetah")) == "mini_cheetah"
+    monkeypatch.chdir(tmp_path.parent)
+    assert design_argument(load_robot(f"{tmp_path.name}/mine.yaml")) == f"{tmp_path.name}/mine.yaml"
     path.write_text(yaml.safe_dump({"family": "octopus"}))
     with pytest.raises(InputError, match=r"family.*octopus.*hyperleg, tree"):
         load_robot(path)
