@@ -28,6 +28,12 @@ CHANGES = {
             'name="hip" axis="0 1 0" damping="0.05" frictionloss="0.8"',
         ),
     ],
+    "rubbing": [
+        (
+            'name="hip" axis="0 1 0" damping="0.05"',
+            'name="hip" axis="0 1 0" damping="0.3" frictionloss="0.4"',
+        ),
+    ],
     "cubic": [],
     "cubic_faint": [],
     "limited": [

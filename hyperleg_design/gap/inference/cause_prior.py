@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import log_ndtr
 
 from hyperleg_design.gap.effects import WEIGHED
+from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis
 from hyperleg_design.gap.inference.prior_odds import prior_odds
@@ -18,23 +19,29 @@ def log_prior(
     hypothesis: Hypothesis, evidence: Evidence, rules: InferenceRules, count: Mapping[str, int]
 ) -> float:
     """Log prior probability of a set of causes at their values [nat]: each effect is as likely
-    as any other, but for one that acts at another place already, at each of its places, or at
-    all of them. What stands in the references, too, may be as small as a usual error: it is held
-    so that no change takes its place.
+    as any other, at each of its places, or at all of them, but for one that acts at another place
+    already, and for friction of another kind where a joint rubs already. What stands in the
+    references, too, may be as small as a usual error: it is held so that no change takes its place.
     """
     own = rules.cause
     found, place = 0.0, 0
     acting: set[tuple[str, bool]] = set()
+    rubbing: set[tuple[str, bool]] = set()
     for one in hypothesis.candidates:
-        kind = one.effect, one.standing
+        kind, at = (one.effect, one.standing), (one.location, one.standing)
         changed = bool(evidence.references) and not one.standing
         chance = own.changed if changed else own.probability
-        chance *= own.again if kind in acting else 1 / len(count)
-        if acting and kind not in acting:
-            chance *= 1 - own.again
+        places = count[one.effect] + (count[one.effect] > 1)
+        if one.effect in FRICTION and at in rubbing:
+            chance *= own.again / (len(FRICTION) - 1)
+        elif kind in acting:
+            chance *= own.again / places
+        else:
+            chance *= (1 - own.again if acting else 1.0) / (len(count) * places)
         acting.add(kind)
+        if one.effect in FRICTION:
+            rubbing.add(at)
         found += float(np.log(chance))
-        found -= float(np.log(count[one.effect] + (count[one.effect] > 1)))
         odds = []
         for cause in one.causes:
             values = hypothesis.values(place)

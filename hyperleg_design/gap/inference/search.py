@@ -77,8 +77,10 @@ class Search:
                     best = self._better(self.further(rest, one), best)
             if best is current:
                 best = self._beside_rivals(current)
-                if best is current:
-                    break
+            if best is current:
+                best = self._listed(current)
+            if best is current:
+                break
             current, fewer = best, self._fewer(best)
             best = self._better(fewer[:-1], current)
             if best is not current:
@@ -112,6 +114,24 @@ class Search:
                 best = self._better(self.further(rest, at=one.location), best)
         return best
 
+    def _listed(self, current: Hypothesis) -> Hypothesis:
+        """Search without the flexible effects of a hypothesis, which take what several causes of
+        the catalogue leave together before any of these has been tried beside another.
+
+        Args:
+            current: the hypothesis.
+
+        Returns:
+            What the search ends in, if better; else the current hypothesis.
+        """
+        rest = tuple(one for one in current.candidates if not WEIGHED[one.effect].flexible)
+        if len(rest) == len(current.candidates):
+            return current
+        best = self._known(rest) or self.fits.fit(rest, current.scales)
+        while (more := self._better(self.further(best, flexible=False), best)) is not best:
+            best = more
+        return max(current, best, key=lambda any_: any_.score)
+
     def _fewer(self, current: Hypothesis) -> list[Hypothesis]:
         """A hypothesis without each of its candidates."""
         smaller = []
@@ -126,7 +146,11 @@ class Search:
         return self.fitted.get(tuple(sorted(one.name for one in candidates)))
 
     def further(
-        self, current: Hypothesis, instead: Candidate | None = None, at: str = ""
+        self,
+        current: Hypothesis,
+        instead: Candidate | None = None,
+        at: str = "",
+        flexible: bool = True,
     ) -> list[Hypothesis]:
         """Fit the most promising causes beside those of a hypothesis.
 
@@ -134,6 +158,7 @@ class Search:
             current: the hypothesis.
             instead: a candidate whose place they are to take: only those that promise more.
             at: location of those that are tried; all by default, and effects at all of theirs.
+            flexible: whether effects that the catalogue lacks are among them.
         """
         rules = self.rules.search
         promises: dict[Name, list[Promise]] = {}
@@ -151,9 +176,9 @@ class Search:
         if instead is not None:
             least = max(least, gains.get(instead.name, least))
         promising = [name for name in names if gains[name] > least and at in ("", name[1])]
-        flexible = [name for name in promising if WEIGHED[name[0]].flexible]
-        chosen = [name for name in promising if name not in flexible][: rules.candidates]
-        chosen += flexible[: rules.flexible]
+        unlisted = [name for name in promising if WEIGHED[name[0]].flexible]
+        chosen = [name for name in promising if name not in unlisted][: rules.candidates]
+        chosen += unlisted[: rules.flexible if flexible else 0]
         chosen = [name for name in chosen if self._hopeful(promises[name], current)]
         fitted = screen.spread(
             lambda name: self.best_of(promises[name][: rules.starts], current), chosen, self.threads

@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import combinations
 
+import diagnosed
 import numpy as np
 import pytest
 
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate
+from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.search import Search, traces_of, ungaining
 
 VISCOUS, DRY = ("viscous_friction", "knee", False), ("coulomb_friction", "hip", False)
@@ -122,3 +124,14 @@ def test_a_cause_that_was_worse_than_none_is_fitted_again_when_it_promises_more(
     worse = replace(nothing, log_evidence=nothing.log_evidence - 1.1 * lacking)
     assert search._hopeful([promise], better)
     assert not search._hopeful([promise], worse)
+
+
+def test_causes_that_act_together_are_looked_for_behind_a_torque_of_any_shape(robot_files):
+    logs = [diagnosed.run("rubbing", seed, session="today") for seed in (0, 1)]
+    evidence = diagnosed.evidence(robot_files["coupled"], *logs)
+    effects = "coulomb_friction", "viscous_friction", "odd_torque"
+    search = Search(evidence, InferenceRules(), [(effect, "hip") for effect in effects])
+    torque = Candidate("odd_torque", "hip", (search.traces["odd_torque", "hip", False][0],))
+    listed = search._listed(search.fits.fit([torque], search.fits.nothing.scales))
+    assert {effect for effect, *_ in listed.names} == set(effects[:2])
+    assert search._listed(listed) is listed

@@ -75,6 +75,17 @@ def test_two_causes_are_both_named(robot_files):
     }
 
 
+def test_friction_of_two_kinds_at_one_joint_is_named_and_no_torque_that_no_effect_has(robot_files):
+    result = found(robot_files, "rubbing", references=(2, 3))
+    assert result.verdict == "explained"
+    sizes = {
+        c.effect: next(iter(c.parameters.values())) for c in result.causes if c.location == "hip"
+    }
+    assert set(sizes) == {"coulomb_friction", "viscous_friction"}
+    assert sizes["coulomb_friction"].low < 0.4 < sizes["coulomb_friction"].high
+    assert sizes["viscous_friction"].low < 0.25 < sizes["viscous_friction"].high
+
+
 def test_the_file_keeps_its_schema_and_reads_back(viscous, tmp_path):
     validate = pytest.importorskip("jsonschema").validate
     content = json.loads(json.dumps(viscous.mapping(), allow_nan=False))

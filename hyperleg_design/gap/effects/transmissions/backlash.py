@@ -73,17 +73,20 @@ class Backlash(MotorEffect):
 
     @override
     def fixed(self, values: np.ndarray) -> np.ndarray:
-        """Where encoders sit and joints rub; encoders on the rotors, joints always move by
-        themselves.
+        """Where encoders sit; on the rotors, joints always move by themselves, and rub or do
+        not.
         """
-        return np.array([False, True, values[1] >= belt.CHOSEN, True])
+        at_rotors = values[1] >= belt.CHOSEN
+        return np.array([False, True, at_rotors, at_rotors])
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """Small and large angles, with encoders on either side, or carried over; where ends are met
         depends on the angle.
         """
-        rotors = [[angle, 0.0, 1.0, 0.0] for angle in (0.003, 0.01, 0.03)]
+        rotors = [
+            [angle, 0.0, 1.0, behind] for angle in (0.003, 0.01, 0.03) for behind in (0.0, 0.5, 1.0)
+        ]
         joints = [
             [angle, 1.0, 1.0, 0.0]
             for angle in (0.003, 0.006, 0.011, 0.018, 0.026, 0.036, 0.048, 0.062)

@@ -15,7 +15,7 @@ themselves later, so that the belt is stretched by what the motor gives it, and 
 joint's own way; friction before it stretches no belt. In a dead zone of width w nothing is
 transmitted, and s moves by itself,
 
-    side 0: J s'' = tau - J M^T q_ddot      the rotor alone under its torque
+    side 0: J s'' = tau - J M^T q_ddot      the rotor alone under its torque, and the friction that acts before the belt
     side 1: I s'' = u                       the joint left behind, of inertia I at the motor, by as much as it would need, its own
                                             friction along where it rubs itself
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -12,6 +13,7 @@ from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.model.machine import rotor
 from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.sliding import dry_friction
 
 RESTITUTION = 0.3
 """Speed after over speed before a rotor hits the end of its dead zone; assumed: gears and cords
@@ -41,7 +43,8 @@ def slack(
         side: on which the positions were logged `(k,)`.
         coasting: from 0, carried over by the load, to 1, moving by itself `(k,)`; a joint, on side
             1, always does.
-        behind: whether joints rub behind the belt, on side 1 `(k,)`; by default not.
+        behind: share of the friction that acts behind the belt `(k,)`, none by default: on a joint
+            that is left behind, and not on a rotor that crosses.
     """
     found = np.zeros((len(play), len(signals.time)))
     pushed = cache(lambda: _pushed(signals, motor))
@@ -55,10 +58,12 @@ def slack(
             if at_rotor not in kicks:
                 push = _joint_alone(signals, motor) if at_rotor else _rotor_alone(signals, motor)
                 kicks[at_rotor] = (np.nan_to_num(push) * signals.step).tolist()
-            if at_rotor and behind is not None and behind[row] >= CHOSEN:
-                way = _rubbing(kicks[at_rotor], signals, motor, float(width) / 2)
+            bounce = 0.0 if at_rotor else RESTITUTION
+            share = 0.0 if behind is None else float(behind[row])
+            if share := (float(share >= CHOSEN) if at_rotor else 1.0 - share):
+                rubbing = _Rubbing.of(signals, motor, at_rotor, share)
+                way = _rubbed(kicks[at_rotor], rubbing, signals.step, float(width) / 2, bounce)
             else:
-                bounce = 0.0 if at_rotor else RESTITUTION
                 way = _bounced(kicks[at_rotor], signals.step, float(width) / 2, bounce)
             found[row] = free * np.array(way)
         if free < 1:
@@ -96,25 +101,52 @@ def _bounced(kicks: list[float], step: float, half: float, restitution: float) -
     return found
 
 
-def _rubbing(kicks: list[float], signals: Signals, motor: int, half: float) -> list[float]:
-    """As `_bounced`, of a rotor beside joints that rub: friction slows them, and at most stops
-    them.
-    """
-    subject, step = signals.subject, signals.step
-    share = np.abs(subject.motor_from_joint[motor])
-    slowed = step / _inertia(signals, motor)
-    drops = (float(share @ subject.coulomb) * slowed).tolist()
-    keeps = np.exp(-float(share**2 @ subject.viscous) * slowed).tolist()
-    turning = np.nan_to_num(signals.velocity @ subject.joint_from_motor[:, motor]).tolist()
-    place, speed = half if kicks[0] > 0 else -half, 0.0
+@dataclass(frozen=True)
+class _Rubbing:
+    """What slows a rotor, or the joints left behind by it."""
+
+    sign: float
+    """Of the body's own speed in that of the rotor against its joints."""
+    turning: list[float]
+    """Speed of the body whose motion is known, on the motor's side [rad/s]."""
+    drops: list[float]
+    """Speed that Coulomb friction takes in a tick [rad/s]."""
+    keeps: list[float]
+    """Share of the speed that viscous friction leaves in a tick [-]."""
+
+    @classmethod
+    def of(cls, signals: Signals, motor: int, at_rotor: bool, part: float) -> _Rubbing:
+        """A part of the friction, on a rotor, or on joints where the rotor's motion is logged."""
+        subject, coulomb = signals.subject, dry_friction(signals)
+        inertia = _inertia(signals, motor) if at_rotor else rotor(subject, motor)
+        slowed = np.broadcast_to(signals.step / inertia, signals.time.shape)
+        share = np.abs(subject.motor_from_joint[motor])
+        turning = np.nan_to_num(signals.velocity @ subject.joint_from_motor[:, motor])
+        return cls(
+            -1.0 if at_rotor else 1.0,
+            turning.tolist(),
+            (part * float(share @ coulomb) * slowed).tolist(),
+            np.exp(-part * float(share**2 @ subject.viscous) * slowed).tolist(),
+        )
+
+
+def _rubbed(
+    kicks: list[float], rubbing: _Rubbing, step: float, half: float, restitution: float
+) -> list[float]:
+    """As `_bounced`, of a body that rubs: friction slows it, and at most stops it."""
+    sign, place, speed = rubbing.sign, half if kicks[0] > 0 else -half, 0.0
     found = []
-    for change, turned_by, drop, keep in zip(kicks, turning, drops, keeps, strict=True):
-        own = (turned_by - speed - change) * keep
+    for change, turning, drop, keep in zip(
+        kicks, rubbing.turning, rubbing.drops, rubbing.keeps, strict=True
+    ):
+        own = (turning + sign * (speed + change)) * keep
         own = max(own - drop, 0.0) if own > 0 else min(own + drop, 0.0)
-        speed = turned_by - own
+        speed = sign * (own - turning)
         place += step * speed
-        if place > half or place < -half:
-            place, speed = (half, min(speed, 0.0)) if place > half else (-half, max(speed, 0.0))
+        if place > half:
+            place, speed = half, -restitution * speed if speed > 0 else speed
+        elif place < -half:
+            place, speed = -half, -restitution * speed if speed < 0 else speed
         found.append(place)
     return found
 
