@@ -4,6 +4,8 @@ under which load, what was measured.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from hyperleg_design.gap.checks.rules import RULES
@@ -56,11 +58,16 @@ def motion_of(log: Log, subject: Subject | None) -> Motion:
             spread[i] = np.percentile(speeds, 90) / max(np.percentile(speeds, 10), 1e-9)
             slow[i] = np.mean(speeds < 0.1 * speeds.max())
     coupled = subject is not None and tuple(subject.motors) != tuple(subject.joints)
+    aliases = (
+        {} if subject is None else dict(zip(subject.motors, subject.motor_aliases, strict=True))
+    )
+    names = [(joint, aliases.get(joint, joint)) for joint in joints]
 
     def anywhere(*kinds: str) -> np.ndarray:
         if coupled and any(log.has(kind, motor) for kind in kinds for motor in log.motors):
             return np.ones(len(joints), bool)
-        return np.array([any(log.has(kind, joint) for kind in kinds) for joint in joints], bool)
+        some = [any(log.has(kind, name) for kind in kinds for name in own) for own in names]
+        return np.array(some, bool)
 
     gains = log.metadata.gains or (
         dict(zip(subject.joints, subject.gains, strict=True)) if subject is not None else {}
@@ -69,17 +76,19 @@ def motion_of(log: Log, subject: Subject | None) -> Motion:
     with_gains = np.array([log.has("position_target", j) for j in joints], bool) & known
     measured = anywhere("joint_torque", "motor_torque", "motor_current")
     asked = with_gains | anywhere("motor_torque_command")
-    commands = np.array([_content(_asked(log, joint), rate, noisy=False) for joint in joints])
+    commands = np.array([_content(_asked(log, own), rate, noisy=False) for own in names])
     content = np.array([_content(q, rate) for q in position.T]) * moving.any(0)
     swing = np.nanmax(position, 0) - np.nanmin(position, 0)
     facts = reversals, spread, swing, content, commands, slow
     return Motion(np.array(joints), *facts, measured | asked, measured, asked)
 
 
-def _asked(log: Log, joint: str) -> np.ndarray:
+def _asked(log: Log, names: Sequence[str]) -> np.ndarray:
+    """What a joint, or its motor under a name of its own, was asked for."""
     for kind in ("position_target", "motor_torque_command"):
-        if log.has(kind, joint):
-            return log.column(f"{kind}/{joint}")
+        for name in names:
+            if log.has(kind, name):
+                return log.column(f"{kind}/{name}")
     return np.empty(0)
 
 

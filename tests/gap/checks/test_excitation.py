@@ -1,7 +1,9 @@
+from types import SimpleNamespace
+
 import numpy as np
 from rig import rig_log, spoiled
 
-from hyperleg_design.gap.checks.excitation import excitation_of
+from hyperleg_design.gap.checks.excitation import excitation_of, motion_of
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
@@ -37,6 +39,24 @@ def test_a_rich_log():
         assert not found[effect].shown
         assert word in found[effect].why
     assert "delay" in found["transmission_elasticity"].why
+
+
+def test_torques_count_under_the_motors_own_names():
+    log = rig_log()
+    own = dict(zip(("hip", "knee"), ("m1", "m2"), strict=True))
+    renamed = {}
+    for name, values in log.signals.items():
+        kind, _, joint = name.partition("/")
+        renamed[f"{kind}/{own[joint]}" if kind.startswith("motor") else name] = values
+    log = log.changed(signals=renamed)
+    subject = SimpleNamespace(
+        joints=("hip", "knee"),
+        motors=("hip", "knee"),
+        motor_aliases=("m1", "m2"),
+        gains=np.full((2, 2), np.nan),
+    )
+    assert not motion_of(log, None).measured.any()
+    assert motion_of(log, subject).measured.all()
 
 
 def test_without_reversals_no_friction_and_no_backlash():
