@@ -42,9 +42,9 @@ class Friction:
             The sentence.
         """
         return (
-            f"Left at {joint}: a torque that goes with its speed as plain friction does: "
-            f"{self.constant:.2g} Nm and {self.viscous:.2g} Nms/rad explain "
-            f"{100 * self.share:.0f} % of it."
+            f"Left at {joint}: a torque that goes with its speed. Plain friction of "
+            f"{self.constant:.2g} Nm and {self.viscous:.2g} Nms/rad would explain "
+            f"{100 * self.share:.0f} % of it, though another shape is more probable."
         )
 
 
@@ -121,6 +121,7 @@ def _everywhere(shown: Sequence[Evidence], fits: Sequence[Friction], enough: flo
         if fit.share >= PLAIN
     )
     return (
-        "Left: torques that go with the joints' speeds as plain friction does, "
-        f"{100 * share:.0f} % of what is left ({sizes})."
+        "Left: torques that go with the joints' speeds. Plain friction would explain "
+        f"{100 * share:.0f} % of what is left ({sizes}), though another "
+        "shape is more probable."
     )

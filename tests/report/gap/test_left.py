@@ -33,7 +33,7 @@ def test_what_drives_the_joint_is_no_friction() -> None:
 
 def test_plain_friction_is_said_once_instead_of_other_shapes() -> None:
     (sentence,) = hints([SHAPE, SHAPE], shown(0.3 * np.sign(SPEED), SPEED))
-    assert sentence.startswith("Left at hinge: a torque that goes with its speed as plain friction")
+    assert sentence.startswith("Left at hinge: a torque that goes with its speed. Plain friction")
 
 
 def test_another_shape_is_said_where_friction_does_not_fit() -> None:
@@ -50,7 +50,7 @@ def test_friction_of_all_joints_is_said_before_a_shape_of_the_whole_robot() -> N
     both = [Evidence("run", "motion", ("hip", "knee"), time, left, 0 * left, speed)]
     tilt = {"location": "robot", "says": "gravity from elsewhere", "closed_beyond": 0.9}
     (sentence,) = hints([tilt], both)
-    assert sentence.startswith("Left: torques that go with the joints' speeds as plain friction")
+    assert sentence.startswith("Left: torques that go with the joints' speeds. Plain friction")
     assert "hip 0.31 Nm" in sentence
     assert "knee 0.1 Nm" in sentence
     assert hints([tilt], []) == ["Left: gravity from elsewhere."]
