@@ -32,6 +32,10 @@ SIDES = ("encoders at the joints", "encoders at the rotors")
 """Choices of the parameter `side`: whose positions logs and controllers know."""
 ROBOT = "robot"
 BATTERY = "battery"
+PLACEHOLDER = 100.0
+"""Limit of torque over what a joint needs from which, at all joints of a robot, it limits nothing
+[-]: robots of `example-robot-data` have 13 at most at the joint where it is least, those with
+limits of 1000 Nm at each joint of a small leg 1500 and more."""
 LIVELY = 10.0
 """Acceleration that a robot's drives are taken to be made for where nobody gives their limits
 [rad/s^2]; assumed."""
@@ -286,8 +290,9 @@ def limited(
 
 @memoized
 def joint_strength(subject: Subject) -> np.ndarray:
-    """Torque for which each joint is made `(n,)` [Nm]: what its motors can give, else gravity's
-    largest and its inertia's share.
+    """Torque for which each joint is made `(n,)` [Nm]: what its motors can give; gravity's largest
+    and its inertia's share where that is not known, and where the limits of all joints are
+    placeholders, `PLACEHOLDER` times that and more.
 
     Args:
         subject: the robot.
@@ -297,9 +302,10 @@ def joint_strength(subject: Subject) -> np.ndarray:
     """
     most = np.minimum(subject.torque_limit, subject.stall_torque)
     share, known = np.abs(subject.joint_from_motor), np.isfinite(most)
-    given = share @ np.where(known, most, 0.0)
+    given, needed = share @ np.where(known, most, 0.0), _needed(subject)
     unknown = (share @ (~known).astype(float) > 0) | (given <= 0)
-    return np.where(unknown, _needed(subject), given) if unknown.any() else given
+    unknown |= np.all(unknown | (given > PLACEHOLDER * needed))
+    return np.where(unknown, needed, given)
 
 
 def motor_strength(subject: Subject, motor: int) -> float:
@@ -314,11 +320,12 @@ def motor_strength(subject: Subject, motor: int) -> float:
         The torque [Nm].
     """
     most = float(min(subject.torque_limit[motor], subject.stall_torque[motor]))
-    if 0 < most < np.inf:
-        return most
     column = np.abs(subject.joint_from_motor[:, motor])
     used = column > 0
-    return float(np.max(joint_strength(subject)[used] / column[used], initial=1e-3))
+    share = joint_strength(subject)[used] / column[used]
+    if 0 < most < np.inf and np.any(share > most / PLACEHOLDER):
+        return most
+    return float(np.max(share, initial=1e-3))
 
 
 def motor_strengths(subject: Subject) -> np.ndarray:
