@@ -240,12 +240,16 @@ class _Answer:
         return max(size.share_closed(alone, whole), WORST)
 
     def rivals(self) -> tuple[Named, ...]:
-        """Other candidates, most probable first."""
+        """Other candidates, most probable first; one an effect and place, as the same effect at all
+        places may show at one alone.
+        """
         found: list[Named] = []
         for hypothesis, candidate in self.posterior.rivals[:MOST_RIVALS]:
             own = [one for one in self.named(hypothesis, candidate) if not self.told(one)]
             found += own[:1]
-        return tuple(sorted(found, key=lambda one: (-one.probability, one.effect, one.location)))
+        found.sort(key=lambda one: (-one.probability, one.effect, one.location))
+        first = {(one.effect, one.location): one for one in reversed(found)}
+        return tuple(one for one in found if first[one.effect, one.location] is one)
 
     def told(self, one: Named) -> bool:
         """Whether a rival is a cause of the most probable hypothesis itself."""

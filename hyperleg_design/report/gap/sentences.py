@@ -219,9 +219,12 @@ def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
         texts += left[:1]
     lacks = diagnosis.get("lacks")
     if lacks and lacks.get("causes"):
+        advice = (
+            "" if diagnosis["verdict"] in ("explained", "none") else " Correct the model first."
+        )
         texts.append(
-            f"The reference logs already show what the model lacks: {phrase(lacks['causes'])}. "
-            "Correct the model first."
+            f"The reference logs already show what the model lacks: {phrase(lacks['causes'])}."
+            f"{advice}"
         )
     return texts
 
