@@ -124,7 +124,8 @@ class Search:
         Returns:
             What the search ends in, if better; else the current hypothesis.
         """
-        rest = tuple(one for one in current.candidates if not WEIGHED[one.effect].flexible)
+        listed = (c for c in current.candidates if not WEIGHED[c.effect].flexible)
+        rest = tuple(listed)
         if len(rest) == len(current.candidates):
             return current
         best = self._known(rest) or self.fits.fit(rest, current.scales)

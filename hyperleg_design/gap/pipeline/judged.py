@@ -11,6 +11,7 @@ from scipy.special import expit
 
 from hyperleg_design import provenance
 from hyperleg_design.gap.checks.check import Check
+from hyperleg_design.gap.checks.coverage import beyond_references
 from hyperleg_design.gap.effects import UNLISTED, WEIGHED
 from hyperleg_design.gap.experiments import experiment
 from hyperleg_design.gap.inference.assembly import Evidence, evidence_of
@@ -243,13 +244,16 @@ class _Answer:
         """Other candidates, most probable first; one an effect and place, as the same effect at all
         places may show at one alone.
         """
-        found: list[Named] = []
+        best: dict[tuple[str, str], Named] = {}
         for hypothesis, candidate in self.posterior.rivals[:MOST_RIVALS]:
-            own = [one for one in self.named(hypothesis, candidate) if not self.told(one)]
-            found += own[:1]
-        found.sort(key=lambda one: (-one.probability, one.effect, one.location))
-        first = {(one.effect, one.location): one for one in reversed(found)}
-        return tuple(one for one in found if first[one.effect, one.location] is one)
+            for rival in self.named(hypothesis, candidate):
+                if not self.told(rival):
+                    known = best.setdefault((rival.effect, rival.location), rival)
+                    if rival.probability > known.probability:
+                        best[rival.effect, rival.location] = rival
+                    break
+        ranked = sorted(best.items(), key=lambda entry: (-entry[1].probability, *entry[0]))
+        return tuple(rival for _, rival in ranked)
 
     def told(self, one: Named) -> bool:
         """Whether a rival is a cause of the most probable hypothesis itself."""
@@ -349,6 +353,7 @@ class _Answer:
             ]
         for s in (*self.evidence.signals, *self.evidence.references):
             found += [f"{s.log.name}: {note}" for note in s.notes]
+        found += beyond_references(self.evidence.signals, self.evidence.references)
         found.extend(
             f"references and tests alike: {cause.location} {description}"
             for cause, description in self.odd()

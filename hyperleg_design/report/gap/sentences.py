@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from hyperleg_design.gap.checks.coverage import REMEDY
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.report.gap.text import chosen
 
@@ -258,6 +259,9 @@ def next_steps(diagnosis: Entry) -> list[tuple[str, str]]:
                 "hyperleg gap diagnose ... --reference HEALTHY_LOG",
             )
         )
+    if verdict == "unknown":
+        beyond = [text for text in diagnosis.get("checks", ()) if REMEDY in text]
+        steps += [(f"{capital(text)}.", "") for text in beyond]
     if verdict in ("unknown", "none"):
         steps.append(
             (

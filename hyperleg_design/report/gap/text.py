@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hyperleg_design.gap.checks.check import Check
+from hyperleg_design.gap.checks.coverage import REMEDY
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.logs.columns import unit
 from hyperleg_design.gap.logs.sampling import Column
@@ -260,6 +261,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     if diagnosis["verdict"] == "unknown":
         left = [one for one in diagnosis.get("residual_shape", ()) if one["shape"] not in APART]
         lines += [f"  left: {one['shape']} at {one['location']}: {one['says']}" for one in left[:3]]
+        lines += [f"  {text}" for text in diagnosis.get("checks", ()) if REMEDY in text]
     if diagnosis["verdict"] == "none" and (rows := sensitivity_rows(diagnosis)):
         lines.append("  these logs would have shown, nine times in ten, from:")
         lines += [

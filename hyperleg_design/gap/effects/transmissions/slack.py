@@ -135,7 +135,7 @@ def _rubbed(
 ) -> list[float]:
     """As `_bounced`, of a body that rubs: friction slows it, and at most stops it."""
     sign, place, speed = rubbing.sign, half if kicks[0] > 0 else -half, 0.0
-    found = []
+    places = []
     for change, turning, drop, keep in zip(
         kicks, rubbing.turning, rubbing.drops, rubbing.keeps, strict=True
     ):
@@ -147,8 +147,8 @@ def _rubbed(
             place, speed = half, -restitution * speed if speed > 0 else speed
         elif place < -half:
             place, speed = -half, -restitution * speed if speed < 0 else speed
-        found.append(place)
-    return found
+        places.append(place)
+    return places
 
 
 @memoized
