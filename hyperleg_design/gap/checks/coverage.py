@@ -48,8 +48,8 @@ def beyond_references(tests: Sequence[Signals], references: Sequence[Signals]) -
             )
         if more:
             remarks.append(
-                f"joint {joint} moves {' and '.join(more)}: no reference tells what the model "
-                f"lacks there; {REMEDY}"
+                f"joint {joint} moves {' and '.join(more)}: references do not tell what the "
+                f"model lacks there; {REMEDY}"
             )
     return remarks
 

@@ -291,8 +291,8 @@ def limited(
 @memoized
 def joint_strength(subject: Subject) -> np.ndarray:
     """Torque for which each joint is made `(n,)` [Nm]: what its motors can give; gravity's largest
-    and its inertia's share where that is not known, and where the limits of all joints are
-    placeholders, `PLACEHOLDER` times that and more.
+    and its inertia's share where that is not known, and where the limits of all joints that
+    carry weight are placeholders, `PLACEHOLDER` times that and more.
 
     Args:
         subject: the robot.
@@ -302,9 +302,12 @@ def joint_strength(subject: Subject) -> np.ndarray:
     """
     most = np.minimum(subject.torque_limit, subject.stall_torque)
     share, known = np.abs(subject.joint_from_motor), np.isfinite(most)
-    given, needed = share @ np.where(known, most, 0.0), _needed(subject)
+    given, (weight, lively) = share @ np.where(known, most, 0.0), _needed(subject)
+    needed = np.maximum(weight, lively)
     unknown = (share @ (~known).astype(float) > 0) | (given <= 0)
-    unknown |= np.all(unknown | (given > PLACEHOLDER * needed))
+    loaded = (weight > lively) & ~unknown
+    if loaded.any() and np.all(given[loaded] > PLACEHOLDER * needed[loaded]):
+        unknown[:] = True
     return np.where(unknown, needed, given)
 
 
@@ -358,7 +361,8 @@ def joint_inertia(subject: Subject) -> np.ndarray:
     )
 
 
-def _needed(subject: Subject) -> np.ndarray:
+def _needed(subject: Subject) -> tuple[np.ndarray, np.ndarray]:
+    """Torque for twice gravity's largest, and for a lively motion, of each joint `(n,)` [Nm]."""
     count = len(subject.joints)
     spread = np.sin(np.outer(np.arange(1, _POSTURES + 1), np.sqrt(np.arange(2, count + 2)))) * 1.5
     still = np.zeros((_POSTURES, count))
@@ -366,7 +370,7 @@ def _needed(subject: Subject) -> np.ndarray:
         subject, subject.default + spread, still, still, _base_at_rest(subject, _POSTURES)
     )
     inertia = joint_inertia(subject) + np.diag(subject.armature)
-    return np.maximum(2 * np.abs(gravity).max(0), inertia * LIVELY)
+    return 2 * np.abs(gravity).max(0), inertia * LIVELY
 
 
 def _base_at_rest(subject: Subject, ticks: int) -> BaseMotion | None:

@@ -46,7 +46,7 @@ def clear_errors(url: str) -> Iterator[None]:
         if url.startswith(SQLITE):
             remedy = f"does not serve as a database ({reason}); choose another folder, or delete "
             remedy += "this file where it is damaged"
-            raise InputError(url.removeprefix(SQLITE), "", None, remedy) from None
+            raise InputError(url, "", None, remedy) from None
         raise InputError(
             "--storage", "", re.sub(r"//[^@/]*@", "//...@", url), f"does not serve: {reason}"
         ) from None

@@ -61,7 +61,7 @@ def test_strength_is_the_torque_of_the_motors_or_what_gravity_needs(pendulum):
 
 def test_limits_far_beyond_what_all_joints_need_are_placeholders(leg):
     subject = leg(duration=1.0).subject
-    needed = placing._needed(subject)
+    needed = np.maximum(*placing._needed(subject))
     count = len(subject.motors)
     unlimited = {"stall_torque": np.full(count, np.inf)}
     huge = replace(subject, torque_limit=np.full(count, 1e4), **unlimited)

@@ -57,7 +57,7 @@ def test_a_damaged_file_is_named_with_a_remedy(tmp_path):
     (tmp_path / "study.db").write_text("no database at all" * 100)
     with pytest.raises(InputError, match="delete this file where it is damaged") as caught:
         opened(tmp_path)
-    assert str(caught.value).startswith(f"{tmp_path}/study.db: does not serve")
+    assert f"{tmp_path}/study.db: does not serve" in str(caught.value)
     assert "sqlalche.me" not in str(caught.value)
     assert "--storage" not in str(caught.value)
 
