@@ -300,15 +300,8 @@ def joint_strength(subject: Subject) -> np.ndarray:
     Returns:
         The torques `(n,)` [Nm].
     """
-    most = np.minimum(subject.torque_limit, subject.stall_torque)
-    share, known = np.abs(subject.joint_from_motor), np.isfinite(most)
-    given, (weight, lively) = share @ np.where(known, most, 0.0), _needed(subject)
-    needed = np.maximum(weight, lively)
-    unknown = (share @ (~known).astype(float) > 0) | (given <= 0)
-    loaded = (weight > lively) & ~unknown
-    if loaded.any() and np.all(given[loaded] > PLACEHOLDER * needed[loaded]):
-        unknown[:] = True
-    return np.where(unknown, needed, given)
+    given, unknown = _given(subject)
+    return np.where(unknown | _has_placeholders(subject), np.maximum(*_needed(subject)), given)
 
 
 def motor_strength(subject: Subject, motor: int) -> float:
@@ -323,12 +316,11 @@ def motor_strength(subject: Subject, motor: int) -> float:
         The torque [Nm].
     """
     most = float(min(subject.torque_limit[motor], subject.stall_torque[motor]))
+    if 0 < most < np.inf and not _has_placeholders(subject):
+        return most
     column = np.abs(subject.joint_from_motor[:, motor])
     used = column > 0
-    share = joint_strength(subject)[used] / column[used]
-    if 0 < most < np.inf and np.any(share > most / PLACEHOLDER):
-        return most
-    return float(np.max(share, initial=1e-3))
+    return float(np.max(joint_strength(subject)[used] / column[used], initial=1e-3))
 
 
 def motor_strengths(subject: Subject) -> np.ndarray:
@@ -361,6 +353,23 @@ def joint_inertia(subject: Subject) -> np.ndarray:
     )
 
 
+def _given(subject: Subject) -> tuple[np.ndarray, np.ndarray]:
+    """Torque that its motors can give each joint `(n,)` [Nm], and where that is not known."""
+    most = np.minimum(subject.torque_limit, subject.stall_torque)
+    share, known = np.abs(subject.joint_from_motor), np.isfinite(most)
+    given = share @ np.where(known, most, 0.0)
+    return given, (share @ (~known).astype(float) > 0) | (given <= 0)
+
+
+@memoized
+def _has_placeholders(subject: Subject) -> bool:
+    """Whether the limits of all joints that carry weight are placeholders."""
+    (given, unknown), (weight, lively) = _given(subject), _needed(subject)
+    loaded = (weight > lively) & ~unknown
+    return bool(loaded.any() and np.all(given[loaded] > PLACEHOLDER * weight[loaded]))
+
+
+@memoized
 def _needed(subject: Subject) -> tuple[np.ndarray, np.ndarray]:
     """Torque for twice gravity's largest, and for a lively motion, of each joint `(n,)` [Nm]."""
     count = len(subject.joints)

@@ -124,8 +124,7 @@ class Search:
         Returns:
             What the search ends in, if better; else the current hypothesis.
         """
-        listed = (c for c in current.candidates if not WEIGHED[c.effect].flexible)
-        rest = tuple(listed)
+        rest = tuple(c for c in current.candidates if not WEIGHED[c.effect].flexible)
         if len(rest) == len(current.candidates):
             return current
         best = self._known(rest) or self.fits.fit(rest, current.scales)

@@ -246,12 +246,10 @@ class _Answer:
         """
         best: dict[tuple[str, str], Named] = {}
         for hypothesis, candidate in self.posterior.rivals[:MOST_RIVALS]:
-            for rival in self.named(hypothesis, candidate):
-                if not self.told(rival):
-                    known = best.setdefault((rival.effect, rival.location), rival)
-                    if rival.probability > known.probability:
-                        best[rival.effect, rival.location] = rival
-                    break
+            rivals = (one for one in self.named(hypothesis, candidate) if not self.told(one))
+            if (rival := next(rivals, None)) is not None:
+                place = rival.effect, rival.location
+                best[place] = max(best.get(place, rival), rival, key=lambda one: one.probability)
         ranked = sorted(best.items(), key=lambda entry: (-entry[1].probability, *entry[0]))
         return tuple(rival for _, rival in ranked)
 

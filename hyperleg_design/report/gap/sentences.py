@@ -6,9 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hyperleg_design.gap.checks.coverage import REMEDY
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.report.gap.text import chosen
+from hyperleg_design.report.gap.text import beyond_references, chosen
 
 Entry = Mapping[str, Any]
 """A cause, a rival or another entry, as `diagnosis.json` holds it."""
@@ -260,8 +259,7 @@ def next_steps(diagnosis: Entry) -> list[tuple[str, str]]:
             )
         )
     if verdict == "unknown":
-        beyond = [text for text in diagnosis.get("checks", ()) if REMEDY in text]
-        steps += [(f"{capital(text)}.", "") for text in beyond]
+        steps += [(f"{capital(text)}.", "") for text in beyond_references(diagnosis)]
     if verdict in ("unknown", "none"):
         steps.append(
             (

@@ -261,7 +261,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     if diagnosis["verdict"] == "unknown":
         left = [one for one in diagnosis.get("residual_shape", ()) if one["shape"] not in APART]
         lines += [f"  left: {one['shape']} at {one['location']}: {one['says']}" for one in left[:3]]
-        lines += [f"  {text}" for text in diagnosis.get("checks", ()) if REMEDY in text]
+        lines += [f"  {text}" for text in beyond_references(diagnosis)]
     if diagnosis["verdict"] == "none" and (rows := sensitivity_rows(diagnosis)):
         lines.append("  these logs would have shown, nine times in ten, from:")
         lines += [
@@ -271,6 +271,18 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     if diagnosis["separating_experiment"]:
         lines.append(f"  to tell them apart: {_experiment(diagnosis['separating_experiment'])}")
     return "\n".join(lines)
+
+
+def beyond_references(diagnosis: Mapping[str, Any]) -> list[str]:
+    """Pick out the remarks on joints that move as in no reference log.
+
+    Args:
+        diagnosis: as `diagnosis.json` holds it.
+
+    Returns:
+        One sentence a joint, without a full stop.
+    """
+    return [text for text in diagnosis.get("checks", ()) if REMEDY in text]
 
 
 def _titles(where: Sequence[Mapping[str, Any]]) -> dict[tuple[str, str], str]:

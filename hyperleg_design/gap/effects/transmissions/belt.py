@@ -224,7 +224,7 @@ def trace(
         found["motion"][rows[:, None], :, np.array(limbs)] += (
             side[rows, None, None] * beyond
         ).swapaxes(1, 2)
-        if behind is not None and (rubbing := behind >= CHOSEN).any():
+        if behind is not None and (rubbing := (side >= CHOSEN) & (behind >= CHOSEN)).any():
             found["motion"][rubbing] += _rubbed(signals, moved[rubbing], share)
     return found
 

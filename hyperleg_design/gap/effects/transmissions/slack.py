@@ -59,12 +59,10 @@ def slack(
                 push = _joint_alone(signals, motor) if at_rotor else _rotor_alone(signals, motor)
                 kicks[at_rotor] = (np.nan_to_num(push) * signals.step).tolist()
             bounce = 0.0 if at_rotor else RESTITUTION
-            share = 0.0 if behind is None else float(behind[row])
-            if share := (float(share >= CHOSEN) if at_rotor else 1.0 - share):
-                rubbing = _Rubbing.of(signals, motor, at_rotor, share)
-                way = _rubbed(kicks[at_rotor], rubbing, signals.step, float(width) / 2, bounce)
-            else:
-                way = _bounced(kicks[at_rotor], signals.step, float(width) / 2, bounce)
+            beyond = 0.0 if behind is None else float(behind[row])
+            part = float(beyond >= CHOSEN) if at_rotor else 1.0 - beyond
+            rubbing = _Rubbing.of(signals, motor, at_rotor, part) if part else None
+            way = _bounced(kicks[at_rotor], signals.step, float(width) / 2, bounce, rubbing)
             found[row] = free * np.array(way)
         if free < 1:
             found[row] += (1 - free) * float(width) / 2 * pushed()
@@ -78,27 +76,6 @@ def _pushed(signals: Signals, motor: int) -> np.ndarray:
     return band_limited(
         np.tanh(through / max(CROSSING * usual, 1e-12)), signals.step, CROSSING_BAND / signals.step
     )
-
-
-def _bounced(kicks: list[float], step: float, half: float, restitution: float) -> list[float]:
-    """Places of a body between two walls, from its changes of speed; plain numbers, as arrays of a
-    few are slower.
-    """
-    place, speed = half if kicks[0] > 0 else -half, 0.0
-    found = []
-    for change in kicks:
-        speed += change
-        place += step * speed
-        if place > half:
-            place = half
-            if speed > 0:
-                speed *= -restitution
-        elif place < -half:
-            place = -half
-            if speed < 0:
-                speed *= -restitution
-        found.append(place)
-    return found
 
 
 @dataclass(frozen=True)
@@ -129,24 +106,40 @@ class _Rubbing:
             np.exp(-part * float(share**2 @ subject.viscous) * slowed).tolist(),
         )
 
+    def slowed(self, tick: int, speed: float) -> float:
+        """Speed of the rotor against its joints after a tick; friction at most stops the body.
 
-def _rubbed(
-    kicks: list[float], rubbing: _Rubbing, step: float, half: float, restitution: float
-) -> list[float]:
-    """As `_bounced`, of a body that rubs: friction slows it, and at most stops it."""
-    sign, place, speed = rubbing.sign, half if kicks[0] > 0 else -half, 0.0
-    places = []
-    for change, turning, drop, keep in zip(
-        kicks, rubbing.turning, rubbing.drops, rubbing.keeps, strict=True
-    ):
-        own = (turning + sign * (speed + change)) * keep
+        Args:
+            tick: number of the tick.
+            speed: without friction [rad/s].
+        """
+        turning, drop = self.turning[tick], self.drops[tick]
+        own = (turning + self.sign * speed) * self.keeps[tick]
         own = max(own - drop, 0.0) if own > 0 else min(own + drop, 0.0)
-        speed = sign * (own - turning)
+        return self.sign * (own - turning)
+
+
+def _bounced(
+    kicks: list[float], step: float, half: float, restitution: float, rubbing: _Rubbing | None
+) -> list[float]:
+    """Places of a body between two walls, from its changes of speed, and from its friction if it
+    rubs; plain numbers, as arrays of a few are slower.
+    """
+    place, speed = half if kicks[0] > 0 else -half, 0.0
+    places = []
+    for tick, change in enumerate(kicks):
+        speed += change
+        if rubbing is not None:
+            speed = rubbing.slowed(tick, speed)
         place += step * speed
         if place > half:
-            place, speed = half, -restitution * speed if speed > 0 else speed
+            place = half
+            if speed > 0:
+                speed *= -restitution
         elif place < -half:
-            place, speed = -half, -restitution * speed if speed < 0 else speed
+            place = -half
+            if speed < 0:
+                speed *= -restitution
         places.append(place)
     return places
 

@@ -1,3 +1,5 @@
+import dataclasses
+
 import numpy as np
 from pendulum import Wrong, misfit, waves
 
@@ -44,3 +46,15 @@ def test_rotors_show_it_beside_their_joints(pendulum):
         )
         < 0.6
     )
+
+
+def test_a_trace_does_not_depend_on_what_it_is_computed_beside(pendulum):
+    signals = pendulum(Wrong(play=0.02), gains=SOFT)
+    rubbing = dataclasses.replace(signals.subject, coulomb=np.array([0.4]))
+    signals = dataclasses.replace(signals, subject=rubbing)
+    motor = signals.subject.motors[0]
+    starts = BACKLASH.starts(signals, motor)
+    together = BACKLASH.trace(signals, motor, starts)
+    for row, start in enumerate(starts):
+        for name, alone in BACKLASH.trace(signals, motor, start[None]).items():
+            np.testing.assert_allclose(together[name][row], alone[0], atol=1e-12, err_msg=name)
