@@ -242,7 +242,8 @@ class Sweep(Printing):
     """Protocols to run on every design: walk, t_test, or YAML files; those that the sweep names by
     default."""
     seeds: Annotated[int, AtLeast(1)] = 3
-    """Trainings of the robot, or of each toe layout, whose policies are evaluated, at most."""
+    """Trainings of the robot, or of each toe layout, whose policies are evaluated, at most; the
+    best on each design is reported."""
     policies: Path | None = None
     """Folder of trainings; the shipped policies by default."""
     batch: Annotated[int, AtLeast(1)] = 16

@@ -34,7 +34,8 @@ class Search(Printing):
     name: str = ""
     """Name of the study in the database; that of the sweep by default."""
     seeds: Annotated[int, AtLeast(1)] = 1
-    """Trainings of the robot, or of each toe layout, whose policies are evaluated, at most."""
+    """Trainings of the robot, or of each toe layout, whose policies are evaluated, at most; the
+    best on each design is reported."""
     policies: Path | None = None
     """Folder of trainings; the shipped policies by default."""
     batch: Annotated[int, AtLeast(1)] = 8

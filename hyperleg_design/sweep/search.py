@@ -322,7 +322,7 @@ def found_designs(search: Search, study: optuna.Study) -> list[dict[str, Any]]:
 
     Returns:
         Their `row`s. They are candidates: their policies were trained on other designs unless the
-        row's `PROTOCOL.policy` says specialist.
+        row's `PROTOCOL.trained` says specialist.
     """
     rows = [trial.user_attrs[ROW] for trial in study.best_trials]
     first, reverse = search.objectives[0], search.directions[0] == "maximize"

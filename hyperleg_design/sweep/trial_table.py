@@ -1,5 +1,5 @@
-"""What the trials of a sweep say of each design: means with intervals, limits that act, fronts with
-uncertainty, and which parameter each measure follows.
+"""What the trials of a sweep say of each design: means of its best policy with intervals, limits
+that act, fronts with uncertainty, and which parameter each measure follows.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from hyperleg_design.sweep import registry
 from hyperleg_design.sweep.pareto import nondominated
 from hyperleg_design.sweep.spaces.definition import AS_DESCRIBED, Sweep
 from hyperleg_design.sweep.trial_runs import REJECTED
+from hyperleg_design.sweep.trials.best_policy import reported_trials
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -61,7 +62,7 @@ _Z = 1.96
 
 
 def design_table(sweep: Sweep, trials: pd.DataFrame, columns: Mapping[str, Any]) -> pd.DataFrame:
-    """Summarise the trials of each design in one row.
+    """Summarise in one row how each design's best policy walks; see `reported_trials`.
 
     Args:
         sweep: the definition.
@@ -70,9 +71,10 @@ def design_table(sweep: Sweep, trials: pd.DataFrame, columns: Mapping[str, Any])
 
     Returns:
         Those columns and, for each protocol, the mean of every measure (`walk.cost_of_transport`)
-        over the trials that did not fall, of outcomes over all; `.low` and `.high` of the `SHOWN`
-        ones, `.trials`, `.policy` (whether it was trained for the design), `.outside` (parameters
-        outside its trained range), `.limits` (which act), and `.reason` where a design could not be
+        over the reported trials that did not fall, of outcomes over all reported ones; `.low` and
+        `.high` of the `SHOWN` ones, `.trials` (number of those reported), `.policy` (name of the
+        best), `.trained` (whether it was trained for the design), `.outside` (parameters outside
+        its trained range), `.limits` (which act), and `.reason` where a design could not be
         simulated. Trials that fell are left out because height that is lost in a fall is energy
         that is gained: their cost of transport may even be negative.
     """
@@ -91,23 +93,23 @@ def design_table(sweep: Sweep, trials: pd.DataFrame, columns: Mapping[str, Any])
     return pd.DataFrame(rows)
 
 
-def _of_protocol(protocol: str, part: pd.DataFrame) -> dict[str, Any]:
-    if (part["outcome"] == REJECTED).any():
-        return {"reason": str(part["reason"].iloc[0]), "trials": 0}
+def _of_protocol(protocol: str, own: pd.DataFrame) -> dict[str, Any]:
+    if (own["outcome"] == REJECTED).any():
+        return {"reason": str(own["reason"].iloc[0]), "trials": 0}
+    part = reported_trials(own)
     row: dict[str, Any] = {"trials": len(part), "reason": ""}
     known = registry.PROTOCOLS[protocol]
     for name in (*known, *(c for c in map(str, part) if registry.is_waypoint(protocol, c))):
         if name not in part:
             continue
-        groups = [own.to_numpy(float) for _, own in counted(part, name).groupby(part["seed"])]
+        values = counted(part, name).to_numpy(float)
         if name in SHOWN[protocol]:
-            interval = measure_interval(name, groups, resamples=_RESAMPLES)
+            interval = measure_interval(name, [values], resamples=_RESAMPLES)
             row |= {name: interval.mean, f"{name}.low": interval.low, f"{name}.high": interval.high}
         else:
-            real = [g[np.isfinite(g)] for g in groups if np.isfinite(g).any()]
-            row[name] = float(np.mean([g.mean() for g in real])) if real else np.nan
-    row["policy"] = str(part["trained"].iloc[0])
-    row["outside"] = str(part["outside"].iloc[0])
+            real = values[np.isfinite(values)]
+            row[name] = float(real.mean()) if real.size else np.nan
+    row |= {name: str(part[name].iloc[0]) for name in ("policy", "trained", "outside")}
     row["limits"] = acting_limits(part)
     return row
 
@@ -116,7 +118,7 @@ def acting_limits(part: pd.DataFrame) -> str:
     """Name the limits of the motors that act in the mean over trials.
 
     Args:
-        part: trials of one design.
+        part: trials of one design and policy.
 
     Returns:
         Envelope, heat, speed, or none.

@@ -179,7 +179,7 @@ def test_designs_are_walked(tmp_path):
     search = search_of(sweep, plan(sweep, [protocol], seeds=1), ["walk.power", "total_mass"])
     study = run_search(search, tmp_path, 3, batch=3, progress=False)
     rows = trial_frame(study)
-    assert set(rows["walk.policy"]) == {"zero-shot"}
+    assert set(rows["walk.trained"]) == {"zero-shot"}
     told = {t.number: t.values[0] for t in study.trials if t.values}
     for number, power in told.items():
         assert power == rows.set_index("number").loc[number, "walk.power"]
@@ -194,7 +194,7 @@ def test_designs_of_a_quadruped_are_walked_and_its_finalist_walks_again(tmp_path
     )
     search = search_of(sweep, plan(sweep, [protocol]), ["walk.power"], ["walk.fell<=1"])
     study = run_search(search, tmp_path, 2, progress=False)
-    assert trial_frame(study)["walk.policy"].tolist() == ["zero-shot"] * 2
+    assert trial_frame(study)["walk.trained"].tolist() == ["zero-shot"] * 2
     final = run_finalists(search, study, tmp_path, count=1, progress=False)
     (finalist,) = final.finalists
     assert finalist.before["walk.trials"] == 6

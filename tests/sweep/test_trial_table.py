@@ -92,13 +92,13 @@ def test_limits_that_act(share, heat, speed, said):
     assert acting_limits(part) == said
 
 
-def test_a_table_of_designs_has_means_intervals_and_reasons(sweep):
+def test_a_table_of_designs_has_the_best_policys_means_intervals_and_reasons(sweep):
     rows = [
         {
             "sample": sample,
             "variant": "toe",
             "protocol": "walk",
-            "seed": seed,
+            "policy": f"walks-toe-{seed}",
             "trained": "zero-shot",
             "outside": "toe.mass",
             "trial": k,
@@ -112,16 +112,18 @@ def test_a_table_of_designs_has_means_intervals_and_reasons(sweep):
         }
         for sample in (0, 1)
         for seed in (0, 1)
-        for k in (0, 1)
+        for k in range(4)
     ]
     rows += [rows[0] | {"sample": 2, "trial": -1, "outcome": "rejected", "reason": "too low"}]
     columns = {"sample": np.arange(3), "variant": ["toe"] * 3, "toe.mass": [0.1, 0.2, 0.3]}
     found = design_table(sweep, pd.DataFrame(rows), columns).set_index("sample")
-    assert found.loc[1, COST] == pytest.approx(0.555)
-    assert found.loc[1, f"{COST}.low"] < 0.555 < found.loc[1, f"{COST}.high"]
+    assert found.loc[1, COST] == pytest.approx(0.51)  # seed 0 is cheaper; trials 0 and 2
+    assert found.loc[1, f"{COST}.low"] < 0.51 < found.loc[1, f"{COST}.high"]
     assert found.loc[1, "walk.fell"] == 0
-    assert found.loc[1, "walk.fell.high"] > 0.5  # four trials say little
-    assert found.loc[1, "walk.policy"] == "zero-shot"
+    assert found.loc[1, "walk.fell.high"] > 0.5  # two trials say little
+    assert found.loc[1, "walk.trials"] == 2
+    assert found.loc[1, "walk.policy"] == "walks-toe-0"
+    assert found.loc[1, "walk.trained"] == "zero-shot"
     assert found.loc[2, "walk.reason"] == "too low"
     assert np.isnan(found.loc[2, COST])
 
@@ -163,7 +165,7 @@ def test_trials_that_fell_say_nothing_of_the_cost_of_walking():
             "sample": [0, 0, 0, 1],
             "variant": "toe",
             "protocol": "walk",
-            "seed": 0,
+            "policy": "walks-toe-0",
             "trained": "zero-shot",
             "outside": "",
             "outcome": ["arrived", "arrived", "fell", "fell"],

@@ -6,6 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from hyperleg_design.report.sweep.rows import without_variants
+from hyperleg_design.report.sweep.trials_text import policy_kind, policy_names
 from hyperleg_design.report.sweep.violations import violations
 from hyperleg_design.report.text import table
 from hyperleg_design.sweep.finalists import Final, Row, holds_constraints, value_of
@@ -39,11 +40,12 @@ def search_text(search: Search, study: optuna.Study) -> str:
             row["sample"],
             row["variant"],
             *(row[name] for name in (*axes, *search.objectives)),
-            _policy(search, row),
+            policy_names(row),
+            policy_kind(row),
         ]
         for row in rows
     ]
-    heads = ["design", "variant", *axes, *search.objectives, "policy is"]
+    heads = ["design", "variant", *axes, *search.objectives, "policy", "policy is"]
     note = "candidates, in the order of the first objective"
     note += "; their values are the best of many" if search.plan.protocols else ""
     return "\n".join([*lines, table(*without_variants(heads, cells)), note])
@@ -69,9 +71,10 @@ def final_text(search: Search, final: Final) -> str:
         for name, row in stages:
             values = [_with_interval(row, objective) for objective in search.objectives]
             holds = "yes" if holds_constraints(search, row) else "no"
-            cells.append([finalist.number, name, *values, holds, _policy(search, row)])
-    heads = ["design", "values of", *search.objectives, "holds constraints", "policy is"]
-    lines = [table(heads, cells)]
+            policy = [policy_names(row), policy_kind(row)]
+            cells.append([finalist.number, name, *values, holds, *policy])
+    heads = ["design", "values of", *search.objectives, "holds constraints"]
+    lines = [table([*heads, "policy", "policy is"], cells)]
     winner = final.winner()
     if winner is None:
         return "\n".join([*lines, "no winner: no finalist holds all constraints in its new trials"])
@@ -92,12 +95,6 @@ def final_text(search: Search, final: Final) -> str:
     if search.plan.protocols and not final.steps:
         lines.append("its policies were trained on other designs; --finetune trains them on it")
     return "\n".join([*lines, f"build: {build_command(search.sweep, winner.decisive)}"])
-
-
-def _policy(search: Search, row: Row) -> str:
-    """What the policies of a row's trials are to its design: specialist, conditioned, zero-shot."""
-    kinds = [row.get(f"{protocol}.policy") for protocol in search.protocols]
-    return ", ".join(dict.fromkeys(str(kind) for kind in kinds if kind))
 
 
 def _overlap(first: Row, second: Row, name: str) -> bool:

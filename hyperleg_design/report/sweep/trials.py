@@ -19,6 +19,7 @@ from hyperleg_design.report.sweep.trials_text import (
     no_walk_text,
     policies_of,
     policy_kind,
+    policy_names,
     policy_text,
     unsimulated_text,
     with_interval,
@@ -67,6 +68,7 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
     columns = result.columns()
     designs = design_table(sweep, trials, columns)
     objectives = objectives_of(sweep, designs)
+    policies = [f"{protocol}.policy" for protocol in protocols]
     followed = _followed(sweep, designs)
     fronts = front(designs, objectives) if objectives else designs.iloc[:0]
     chosen = best(designs, objectives)
@@ -82,18 +84,22 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
             "objectives": list(objectives),
             "policies": policies_of(trials),
             "sensitivities": followed,
-            "front": _plain(fronts, ["sample", "variant", "on_front", "front_probability"]),
+            "front": _plain(
+                fronts, ["sample", "variant", *policies, "on_front", "front_probability"]
+            ),
             "best": [
                 {**row, "build": command}
                 for row, command in zip(
-                    _plain(chosen, ["by", "sample", "variant", *objectives]), commands, strict=True
+                    _plain(chosen, ["by", "sample", "variant", *policies, *objectives]),
+                    commands,
+                    strict=True,
                 )
             ],
         },
     )
-    policies = [policy_text(trials), *_policy_table(sweep, designs, protocols)]
+    ran = [policy_text(trials), *_policy_table(sweep, designs, protocols)]
     sections = [
-        Section("Policies", [*policies, Table(*falls_table(trials))]),
+        Section("Policies", [*ran, Table(*falls_table(trials, designs))]),
         Section("Measures over the parameters", [_explorer(sweep, designs, fronts, "evaluated")]),
         Section("Limits that act", [_limits(designs, protocols)]),
         Section("Which parameter each measure follows", [_sensitivity_table(followed)]),
@@ -118,7 +124,7 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
         + (
             best_text(sweep, chosen, objectives, commands)
             if len(chosen)
-            else f"{no_walk_text(designs)}\n{text_table(*falls_table(trials))}"
+            else f"{no_walk_text(designs)}\n{text_table(*falls_table(trials, designs))}"
         ),
     }
 
@@ -146,9 +152,11 @@ def evaluated_content(
         policy_text(trials),
         _explorer(sweep, designs, fronts, name),
         Details(
-            "Best designs, limits that act, and which parameter each measure follows",
+            "Best designs, falls of each policy, limits that act, and which parameter each measure "
+            "follows",
             [
                 *_best_tables(sweep, designs, chosen, commands, objectives),
+                Table(*falls_table(trials, designs)),
                 _limits(designs, [p for p in registry.PROTOCOLS if f"{p}.trials" in designs]),
                 _sensitivity_table(_followed(sweep, designs)),
             ],
@@ -201,7 +209,7 @@ def _policy_table(sweep: Sweep, designs: pd.DataFrame, protocols: list[str]) -> 
 
 
 def _explorer(sweep: Sweep, designs: pd.DataFrame, fronts: pd.DataFrame, name: str) -> Explorer:
-    """Every evaluated design; bars are intervals over policies and trials."""
+    """Every evaluated design; bars are intervals over trials of its best policy."""
     names = dict.fromkeys([*_shown(designs), *(chosen.measure for chosen in sweep.trial_maps)])
     labels = {measure: registry.label(measure) for measure in names if measure in designs}
     keys = ["sample", "variant"]
@@ -261,6 +269,7 @@ def _front_tables(
         [
             *design_cells(sweep, row),
             *(with_interval(row, name) for name in objectives),
+            policy_names(row),
             bool(row["on_front"]),
             row["front_probability"],
         ]
@@ -269,7 +278,7 @@ def _front_tables(
     heads = [*design_heads(sweep), *map(registry.label, objectives)]
     return [
         Table(
-            [*heads, "on the front of the means", "probability of the front"],
+            [*heads, "policy", "on the front of the means", "probability of the front"],
             rows,
             "Designs that no other beats in every objective, or may be: the probability counts the "
             "intervals of what was measured.",
@@ -291,11 +300,13 @@ def _best_tables(
             registry.label(row["by"]),
             *design_cells(sweep, row),
             *(with_interval(row, name) for name in objectives),
+            policy_names(row),
             policy_kind(row),
         ]
         for _, row in chosen.iterrows()
     ]
-    heads = ["best by", *design_heads(sweep), *map(registry.label, objectives), "policy is"]
+    measured = map(registry.label, objectives)
+    heads = ["best by", *design_heads(sweep), *measured, "policy", "policy is"]
     builds = {  # a design that is among the best by several objectives, once
         f"{command}  # sample {int(row['sample'])}": None
         for (_, row), command in zip(chosen.iterrows(), commands, strict=True)

@@ -59,8 +59,10 @@ def policy_text(trials: pd.DataFrame) -> str:
     return (
         "; ".join(parts)
         + ". A zero-shot policy was trained on another design than it walks here; one that is "
-        "trained for the design may do better on it. Measures are over the trials that did not "
-        "fall; intervals over policies and trials."
+        "trained for the design may do better on it. A design is judged by the policy that is best "
+        "on it: where several run, odd-numbered trials decide which arrives most often (of equals, "
+        "at the lowest cost of transport), and its even-numbered trials are reported. Measures are "
+        "over those that did not fall; intervals are over trials."
     )
 
 
@@ -101,19 +103,20 @@ def no_walk_text(designs: pd.DataFrame) -> str:
         return "No design could be simulated under every protocol."
     least = int(np.nanargmin(worst.to_numpy(float)))
     return (
-        f"No design falls in at most {100 * MOST_FALLS:g} % of its trials, those of all its "
-        f"policies counted together, so that there is no front and no best design. Sample "
+        f"No design falls in at most {100 * MOST_FALLS:g} % of the trials of the policy that is "
+        f"best on it, so that there is no front and no best design. Sample "
         f"{designs['sample'].iloc[least]} falls least often, in {100 * worst.iloc[least]:.0f} %. "
         f"--policies and --seeds choose the policies; hyperleg search takes another bound, such "
         f"as --constraint '{falls.columns[0]}<=0.3'."
     )
 
 
-def falls_table(trials: pd.DataFrame) -> tuple[list[str], list[list[Any]]]:
-    """Count the falls of each policy, over all designs.
+def falls_table(trials: pd.DataFrame, designs: pd.DataFrame) -> tuple[list[str], list[list[Any]]]:
+    """Count the falls of each policy over all designs, and the designs that it is the best on.
 
     Args:
         trials: of `run_trials`.
+        designs: one row for each design, of `design_table`.
 
     Returns:
         Heads, and a row for each policy.
@@ -122,8 +125,9 @@ def falls_table(trials: pd.DataFrame) -> tuple[list[str], list[list[Any]]]:
     rows: list[list[Any]] = []
     for (protocol, policy), own in run.groupby(["protocol", "policy"], sort=False):
         fell = int((own["fell"] > 0).sum())
-        rows.append([protocol, policy, len(own), fell, 100 * fell / len(own)])
-    return ["protocol", "policy", "trials", "falls", "falls [%]"], rows
+        best_on = int((designs[f"{protocol}.policy"] == policy).sum())
+        rows.append([protocol, policy, len(own), fell, 100 * fell / len(own), best_on])
+    return ["protocol", "policy", "trials", "falls", "falls [%]", "best on designs"], rows
 
 
 def best_text(
@@ -146,11 +150,12 @@ def best_text(
             row["by"],
             *map(str, design_cells(sweep, row)),
             *(with_interval(row, name) for name in objectives),
+            policy_names(row),
             policy_kind(row),
         ]
         for _, row in firsts.iterrows()
     ]
-    heads = ["best by", *design_heads(sweep), *objectives, "policy is"]
+    heads = ["best by", *design_heads(sweep), *objectives, "policy", "policy is"]
     build = dict.fromkeys(f"build this one: {commands[int(i)]}" for i in firsts.index)
     return "\n".join([text_table(heads, rows), *build])
 
@@ -186,19 +191,34 @@ def design_cells(sweep: Sweep, row: Any) -> list[Any]:
     ]
 
 
-def policy_kind(row: Any) -> str:
-    """Say whether the policies that ran on a design were trained for it.
+def policy_names(row: Any) -> str:
+    """Name the policies that a design is judged by.
 
     Args:
-        row: of the table of designs.
+        row: of the table of designs, or as a search stores it.
+
+    Returns:
+        The best policy of each protocol.
+    """
+    return ", ".join(_texts(row, "policy"))
+
+
+def policy_kind(row: Any) -> str:
+    """Say whether the policies that a design is judged by were trained for it.
+
+    Args:
+        row: of the table of designs, or as a search stores it.
 
     Returns:
         The kinds of policies.
     """
-    kinds = [row[c] for c in row.index if c.endswith(".policy") and isinstance(row[c], str)]
-    outside = [row[c] for c in row.index if c.endswith(".outside") and isinstance(row[c], str)]
-    kind = ", ".join(dict.fromkeys(kinds))
-    return f"{kind} (outside the trained range)" if any(outside) else kind
+    kind = ", ".join(dict.fromkeys(_texts(row, "trained")))
+    return f"{kind} (outside the trained range)" if any(_texts(row, "outside")) else kind
+
+
+def _texts(row: Any, name: str) -> list[str]:
+    """Texts of a name that each protocol has a column of; none where it could not be run."""
+    return [v for c, v in row.items() if str(c).endswith(f".{name}") and isinstance(v, str)]
 
 
 def with_interval(row: Any, name: str) -> str:

@@ -20,6 +20,7 @@ from hyperleg_design.evaluation.protocol import (
 from hyperleg_design.evaluation.shipped import Shipped
 from hyperleg_design.simulation.settings import in_use
 from hyperleg_design.sweep.spaces.definition import Sweep
+from hyperleg_design.sweep.trials.best_policy import FEWEST_TRIALS
 
 SEEDS = 3
 """Trainings that are evaluated on each design."""
@@ -63,7 +64,8 @@ def plan(
         The plan.
 
     Raises:
-        InputError: no such protocol, or no policy for the robot or a variant of it.
+        InputError: no such protocol, no policy for the robot or a variant of it, or too few trials
+            to choose among several.
     """
     run = tuple(p if isinstance(p, Protocol) else load_protocol(p) for p in protocols)
     if len({kind_of(p) for p in run}) < len(run):
@@ -74,12 +76,26 @@ def plan(
         for protocol in run
         for variant, robot in robots.items()
     }
+    for protocol in run:
+        _check_trials(protocol, max(len(chosen[kind_of(protocol), v]) for v in sweep.variants))
     digest = hashlib.sha256(json.dumps([_settings(p) for p in run], sort_keys=True).encode())
     for (kind, variant), files in chosen.items():
         for file in files:
             load_policy(file.path)  # a broken file is told before hours of work
             digest.update(f"{kind} {variant} {file.name}".encode() + file.path.read_bytes())
     return Plan(run, chosen, digest.hexdigest())
+
+
+def _check_trials(protocol: Protocol, policies: int) -> None:
+    """Refuse several policies whose trials cannot both decide which is best and be reported."""
+    if policies > 1 and int(protocol.trials) < FEWEST_TRIALS:
+        raise InputError(
+            protocol.name,
+            "trials",
+            int(protocol.trials),
+            f"expects at least {FEWEST_TRIALS} where several policies run: some trials choose the "
+            f"best policy of each design, the others are reported; or give --seeds 1",
+        )
 
 
 def kind_of(protocol: Protocol) -> str:

@@ -32,7 +32,8 @@ def row(cost, low=None, high=None, fell=0.0, sample=1):
         "walk.cost.low": low,
         "walk.cost.high": high,
         "walk.fell": fell,
-        "walk.policy": "zero-shot",
+        "walk.policy": "walks-toe-0",
+        "walk.trained": "zero-shot",
     }
 
 
@@ -59,8 +60,8 @@ def test_found_designs_are_rows_in_the_order_that_the_search_gives(search, monke
     text = search_text.search_text(search, SimpleNamespace(trials=[trial("COMPLETE")]))
     table = text.splitlines()[3:5]
     assert [line.split() for line in table] == [
-        ["7", "toe", "0.2", "0.4", "zero-shot"],
-        ["3", "toe", "0.2", "0.5", "zero-shot"],
+        ["7", "toe", "0.2", "0.4", "walks-toe-0", "zero-shot"],
+        ["3", "toe", "0.2", "0.5", "walks-toe-0", "zero-shot"],
     ]
 
 
@@ -101,5 +102,5 @@ def test_no_finalist_and_no_winner_are_told_apart(search):
     fallen = Finalist(1, row(0.3), row(0.3, fell=0.5), None)
     text = search_text.final_text(search, Final((fallen,), (), 0))
     assert "no winner" in text
-    holds = [line.split()[-2] for line in text.splitlines()[2:4]]
+    holds = [line.split()[-3] for line in text.splitlines()[2:4]]
     assert holds == ["yes", "no"]

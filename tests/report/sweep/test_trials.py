@@ -33,7 +33,7 @@ def ran(tmp_path_factory):
     folder = tmp_path_factory.mktemp("ran")
     (folder / "mine.yaml").write_text(SWEEP)
     (folder / "short.yaml").write_text(PROTOCOL)
-    arguments = ["sweep", "run", str(folder / "mine.yaml"), "--seeds", "1", "--json"]
+    arguments = ["sweep", "run", str(folder / "mine.yaml"), "--seeds", "2", "--json"]
     out = ["--out", str(folder / "out")]
     assert cli.main([*arguments, "--evaluate", str(folder / "short.yaml"), *out]) == 0
     return folder / "out"
@@ -44,6 +44,8 @@ def test_the_page_shows_policies_limits_sensitivities_front_and_best(ran):
     for words in (
         "zero-shot",
         "lower than a fall",
+        "walk_upright-toe-0",
+        "best on designs",
         "Limits that act",
         "Which parameter each measure follows",
         "Pareto front",
@@ -56,11 +58,14 @@ def test_the_page_shows_policies_limits_sensitivities_front_and_best(ran):
 def test_tables_hold_every_design(ran):
     designs = pd.read_parquet(ran / "evaluated.parquet").set_index("sample")
     assert len(designs) == 4
-    assert (designs["walk.trials"] == [0, 2, 0, 2]).all()
+    assert (designs["walk.trials"] == [0, 1, 0, 1]).all()  # one of two trials chose the policy
+    assert set(designs["walk.policy"].dropna()) <= {"walk_upright-toe-0", "walk_upright-toe-1"}
     assert designs.loc[3, "total_mass"] > designs.loc[1, "total_mass"]
     found = json.loads((ran / "evaluated.json").read_text())
     assert found["objectives"] == ["total_mass", "walk.cost_of_transport"]
     assert found["policies"][0]["designs"] == 2
+    best = found["best"][0]
+    assert best["walk.policy"] == designs.loc[best["sample"], "walk.policy"]
 
 
 def test_an_objective_that_no_protocol_gives_is_one_clear_error(ran, tmp_path, capsys):

@@ -71,9 +71,16 @@ def test_a_measure_has_its_interval_where_there_is_one(row, text):
     ],
 )
 def test_kinds_of_policies_are_named_once(kinds, outside, text):
-    row = {"walk.policy": kinds[0], "t_test.policy": kinds[1]}
+    row = {"walk.trained": kinds[0], "t_test.trained": kinds[1]}
     row |= {"walk.outside": outside[0], "t_test.outside": outside[1]}
     assert trials_text.policy_kind(pd.Series(row)) == text
+    assert trials_text.policy_kind(row) == text
+
+
+def test_the_policy_of_each_protocol_is_named():
+    row = {"walk.policy": "walks-toe-1", "t_test.policy": "turns-toe-0", "walk.trained": "unknown"}
+    assert trials_text.policy_names(pd.Series(row)) == "walks-toe-1, turns-toe-0"
+    assert trials_text.policy_names({**row, "t_test.policy": np.nan}) == "walks-toe-1"
 
 
 def test_the_best_design_by_each_objective_comes_with_its_command():
@@ -87,7 +94,8 @@ def test_the_best_design_by_each_objective_comes_with_its_command():
     chosen = pd.DataFrame(rows, index=[1, 0, 2])
     text = trials_text.best_text(sweep, chosen, ("cost",), ["zero", "one", "two"])
     lines = text.splitlines()
-    assert " ".join(lines[0].split()) == "best by sample variant toe.mass [kg] cost policy is"
+    heads = "best by sample variant toe.mass [kg] cost policy policy is"
+    assert " ".join(lines[0].split()) == heads
     assert lines[2].split() == ["cost", "4", "toe", "0.1235", "0.4"]
     assert [line for line in lines if line.startswith("build")] == [
         "build this one: one",
@@ -98,7 +106,7 @@ def test_the_best_design_by_each_objective_comes_with_its_command():
 def test_where_no_design_walks_the_rule_and_the_falls_of_each_policy_are_told():
     designs = pd.DataFrame({"sample": [0, 1, 2], "walk.fell": [0.5, 0.25, np.nan]})
     text = trials_text.no_walk_text(designs)
-    assert "No design falls in at most 5 % of its trials" in text
+    assert "in at most 5 % of the trials of the policy that is best on it" in text
     assert "Sample 1 falls least often, in 25 %." in text
     assert "--constraint 'walk.fell<=0.3'" in text
     nothing = trials_text.no_walk_text(designs[2:])
@@ -106,9 +114,10 @@ def test_where_no_design_walks_the_rule_and_the_falls_of_each_policy_are_told():
     assert "has a value" in trials_text.no_walk_text(designs.assign(**{"walk.fell": 0.0}))
     rows = {"trial": [0, 1, 0, -1], "protocol": "walk", "policy": ["a", "a", "b", ""]}
     trials = pd.DataFrame(rows | {"fell": [1.0, 0.0, 0.0, np.nan]})
-    assert trials_text.falls_table(trials)[1] == [
-        ["walk", "a", 2, 1, 50.0],
-        ["walk", "b", 1, 0, 0.0],
+    judged = designs.assign(**{"walk.policy": ["b", "b", np.nan]})
+    assert trials_text.falls_table(trials, judged)[1] == [
+        ["walk", "a", 2, 1, 50.0, 0],
+        ["walk", "b", 1, 0, 0.0, 2],
     ]
 
 

@@ -41,6 +41,13 @@ def test_two_protocols_of_a_kind_and_a_protocol_that_is_not_there_are_refused():
         plan(SWEEP, ["wlak"])
 
 
+def test_one_trial_cannot_both_choose_a_policy_and_be_reported():
+    single = load_protocol("walk").changed(trials=1)
+    with pytest.raises(InputError, match=r"trials = 1: expects at least 2 .*--seeds 1"):
+        plan(SWEEP, [single], seeds=2)
+    assert plan(SWEEP, [single], seeds=1).protocols == (single,)
+
+
 def test_a_folder_without_policies_is_refused(tmp_path):
     with pytest.raises(InputError):
         plan(SWEEP, ["walk"], policies=tmp_path)
