@@ -21,7 +21,7 @@ FEWEST_WORDS = 3
 """Words that the first paragraph of a public docstring has at least."""
 NAMES_ALLOWED = {
     "evaluation": 9,
-    "gap": 448,
+    "gap": 419,
     "report": 9,
     "robot": 1,
     "simulation": 6,
@@ -32,7 +32,7 @@ NAMES_ALLOWED = {
 DOCSTRINGS_ALLOWED = {"gap": 1}
 """Public docstrings that are too short, by package; lower a number when you mend some."""
 
-ARGUMENTS_ALLOWED = {"gap": 62}
+ARGUMENTS_ALLOWED: dict[str, int] = {}
 """Public functions whose docstrings do not describe every argument, by package; lower a number when
 you mend some. What a decorator registers under one signature (reward terms, observations, measures)
 is described once, in its module."""

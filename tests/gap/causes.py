@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.inference.cause import Cause
 
 
 def unbounded(

@@ -22,7 +22,7 @@ from hyperleg_design.simulation.alteration import Alteration
 KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 """Where an effect can sit."""
 RESIDUALS = ("motion", "drive", "control", "base", "ground")
-"""Rows that a trace can fill; `gap/signals/signals.py` says what each compares."""
+"""Residuals in which a trace can stand; `Signals` says what each compares."""
 LOGGED, NEEDED, STEERED = NUISANCE_TORQUES = ("logged", "needed", "steered")
 """Torques that a trace of a nuisance parameter rests on: those of the log; those that the motion
 needs; the log's with targets by which controllers ask for what the motion needs, where nobody
@@ -38,8 +38,8 @@ as it is."""
 class Effect(ABC):
     """One unmodelled effect; a class without state.
 
-    Residuals of all residuals are what the log shows minus what the model explains, so that a log
-    made with the effect at `values` has, apart from noise, the residual `trace(signals, location,
+    Every residual is what the log shows minus what the model explains, so that a log of a robot
+    with the effect at `values` has, apart from noise, the residual `trace(signals, location,
     values)`; at the nulls the trace is zero.
     """
 
@@ -55,7 +55,8 @@ class Effect(ABC):
     needs: ClassVar[Need]
     """What it needs of a motion to show."""
     hooks: ClassVar[type[Hooks]]
-    """What it does in each step of a simulation, with its parameters as constants."""
+    """What it does at its joint or motor in each step of a simulation, with its parameters as
+    constants; needed where `alteration` is not overridden."""
     listed: ClassVar[bool] = True
     """Whether the catalogue has it, so that answers name it as a cause. One that it lacks competes
     with those that it has; where it wins, something unlisted acts, which `describe` tells."""
@@ -133,7 +134,7 @@ class Effect(ABC):
 
     @abstractmethod
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        """Residual that it leaves in each residual.
+        """Compute what it leaves in each of the log's residuals.
 
         Args:
             signals: a conditioned log, `t` ticks.
@@ -221,9 +222,6 @@ class Effect(ABC):
 
         Args:
             location, subject: as of `bounds`.
-
-        Returns:
-            As `bounds`.
         """
         return self.bounds(location, subject)
 
@@ -284,7 +282,13 @@ class Effect(ABC):
         return {place: self._sized(spreads, place, subject) for place in places}
 
     def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """As `nuisance_spreads`, of places without such a parameter, too: up to three are usual."""
+        """State how far a healthy robot usually is from its model, also at places where the effect
+        has no nuisance parameter; a cause must be larger than that to be a fault.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+        """
         return self.nuisance_spreads(subject, step)
 
     def nuisance_trace(
@@ -304,18 +308,20 @@ class Effect(ABC):
         return None
 
     def holds_torque(self, values: np.ndarray) -> bool:
-        """Whether its trace at some values `(parameters,)` holds the trusted torque, filtered."""
+        """Tell whether its trace contains the measured motor torque, filtered, and so the noise of
+        it.
+
+        Args:
+            values: of its parameters `(parameters,)`.
+        """
         return False
 
     def starts(self, signals: Signals, location: str) -> np.ndarray:
-        """Values from which a search for the best fit to a log is worth while.
+        """Values from which a search for the best fit begins, inside the bounds `(s, parameters)`.
 
         Args:
             signals: a conditioned log, `t` ticks.
             location: one of `locations`.
-
-        Returns:
-            Values `(s, parameters)`, inside the bounds.
         """
         usual = self.usual(location, signals.subject)
         sized = np.array([not p.shape for p in self.parameters])
@@ -332,21 +338,15 @@ class Effect(ABC):
         Args:
             signals: a conditioned log, `t` ticks.
             location: one of `locations`.
-
-        Returns:
-            Values `(v, parameters)`.
         """
         return self.nulls[None]
 
     def steps(self, location: str, subject: Subject) -> np.ndarray:
-        """Steps of finite differences, so small that the trace is about straight over them.
+        """Steps of finite differences over which the trace is about straight `(parameters,)`.
 
         Args:
             location: one of `locations`.
             subject: the robot.
-
-        Returns:
-            The steps `(parameters,)`.
         """
         return 0.1 * self.usual(location, subject)
 

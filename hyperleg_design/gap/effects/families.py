@@ -1,27 +1,32 @@
-"""Sets of effects that some experiment tells apart from others, by identifier."""
+"""Groups of effects, by identifier: what experiments tell apart, and on what effects act.
+
+A new effect that belongs to a group is entered here; its class may then name the group in
+`told_apart`.
+"""
 
 from __future__ import annotations
 
 FRICTION = frozenset(
     {"coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction"}
 )
-"""Effects of joints that rub."""
+"""Friction of joints."""
 INERTIAL = frozenset({"payload", "link_mass", "link_com"})
-"""Masses and where they are."""
+"""Masses and centres of mass of links."""
 LATE = frozenset({"command_delay", "actuator_bandwidth"})
-"""What comes late."""
+"""Delays and lags of the drives."""
 SCALING = frozenset(
     {"torque_constant", "transmission_ratio", "thermal_derating", "controller_gain", "voltage_sag"}
 )
-"""What scales the torque at a joint."""
+"""Effects that scale the torque at a joint."""
 WITHOUT_DRIVE = INERTIAL | {"viscous_friction", "coulomb_friction", "joint_spring", "rotor_inertia"}
-"""What a joint shows while its drive is off."""
+"""Effects that show while the drive of a joint is off."""
 WITH_LOAD = INERTIAL | {"encoder_offset", "joint_spring", "load_dependent_friction"}
-"""What changes with a known load otherwise than a scale of the torque does."""
+"""Effects that a known load shows, because it changes them in another way than a scale of the
+torque."""
 IN_DRIVES = LATE | SCALING - {"transmission_ratio"} | {"torque_saturation"}
-"""What changes the torque that a motor gives, before anything that acts at its joints."""
+"""Effects on the torque that a motor gives; effects at the joints act on what is left of it."""
 AT_JOINTS = {"rotor_inertia", "joint_spring", "encoder_offset", "cogging"}
-"""What is neither friction nor a mass."""
+"""Further effects at joints, neither friction nor masses of links."""
 BEYOND_COMMANDS = (
     FRICTION
     | INERTIAL
@@ -29,6 +34,6 @@ BEYOND_COMMANDS = (
     | {"torque_constant", "thermal_derating"}
     | {"transmission_ratio", "backlash", "transmission_elasticity"}
 )
-"""What acts behind the torque that a drive measures, and not on what is asked of it."""
+"""Effects between the torque that a drive measures and the motion of the joints."""
 BESIDE_TRANSMISSIONS = FRICTION | INERTIAL | IN_DRIVES | AT_JOINTS
-"""What leaves the speeds of rotors and joints in their nominal ratio."""
+"""Effects under which rotors and joints keep their nominal ratio of speeds."""

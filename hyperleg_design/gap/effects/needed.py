@@ -1,5 +1,5 @@
-"""What another motion than the logged one would need: for effects by which positions are told
-wrongly.
+"""Torques that another motion than the logged one would need: for effects by which logged positions
+are wrong.
 """
 
 from __future__ import annotations
@@ -19,8 +19,7 @@ def needed(
     *,
     rotors: bool = True,
 ) -> dict[str, np.ndarray]:
-    """Torque that a motion needs, less what contact gives, by residual: `motion` `(t, n)` [Nm], and
-    the `base`'s wrench `(t, 6)`.
+    """Compute the torque that a motion needs, less what contact gives.
 
     Args:
         signals: a conditioned log; its base moves as logged.
@@ -28,6 +27,10 @@ def needed(
         velocity: `(t, n)` [rad/s]; as logged by default.
         acceleration: `(t, n)` [rad/s^2]; as logged by default.
         rotors: add the rotors' inertia.
+
+    Returns:
+        By residual: joint torques of `motion` `(t, n)` [Nm], and the wrench of the `base` `(t, 6)`
+        [N, Nm].
     """
     subject, base = signals.subject, signals.base
     motion = (
@@ -51,12 +54,12 @@ def needed(
 
 @memoized
 def as_logged(signals: Signals) -> dict[str, np.ndarray]:
-    """What the logged motion needs by `needed`, without rotors: each location compares with it.
+    """Compute what the logged motion needs, without rotors; all places of an effect share it.
 
     Args:
         signals: a conditioned log, `t` ticks.
 
     Returns:
-        What `needed` returns, of the logged motion.
+        As of `needed`.
     """
     return needed(signals, signals.position, rotors=False)

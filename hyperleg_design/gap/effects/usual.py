@@ -8,19 +8,21 @@ from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.model.subject import Subject
 
 LATE, LATE_TICKS = 0.001, 0.15
-"""[s] and ticks of the log, of all drives; one of them lags by half as much beside them."""
+"""Usual delay between a command or measurement and its row in a log: a time [s], and a share of the
+log's step [-] (assumed)."""
 COULOMB_LEAST = 0.0008
-"""Of the torque that the joint is made for: friction where the model has none."""
+"""Usual friction of a joint whose model has none, over the torque that the joint is made for [-]
+(assumed)."""
 
 
 def lateness(step: float) -> float:
-    """How late what is told usually is [s].
+    """Compute the usual delay of commands and measurements.
 
     Args:
         step: of the logs [s].
 
     Returns:
-        The time [s].
+        The delay [s].
     """
     return LATE + LATE_TICKS * step
 

@@ -133,27 +133,31 @@ def shortest_set(
     """
     names = list(grams)
 
-    def told(chosen: Sequence[str]) -> np.ndarray:
-        """How clear each effect and each pair is, up to `CLEAR`."""
+    def clearness(chosen: Sequence[str]) -> np.ndarray:
+        """Compute how clearly motions show each effect and tell each pair apart, up to `CLEAR`.
+
+        Args:
+            chosen: names of the motions.
+        """
         gram = info.summed(grams, chosen)
         shown = [info.strength(gram, blocks, place) for place in blocks.places]
         return np.minimum(np.array([*shown, *(apart(gram, blocks, pair) for pair in pairs)]), CLEAR)
 
-    wanted = told(names) >= CLEAR
+    wanted = clearness(names) >= CLEAR
     chosen: list[str] = []
     while True:
-        now = told(chosen) if chosen else np.zeros(len(wanted))
+        now = clearness(chosen) if chosen else np.zeros(len(wanted))
         if (now[wanted] >= CLEAR).all():
             break
         gains = {
-            name: float((told([*chosen, name])[wanted] - now[wanted]).sum()) / lengths[name]
+            name: float((clearness([*chosen, name])[wanted] - now[wanted]).sum()) / lengths[name]
             for name in names
             if name not in chosen
         }
         chosen.append(max(gains, key=lambda name: gains[name]))
     for name in list(chosen):
         fewer = [n for n in chosen if n != name]
-        if fewer and (told(fewer)[wanted] >= CLEAR).all():
+        if fewer and (clearness(fewer)[wanted] >= CLEAR).all():
             chosen = fewer
     return tuple(chosen)
 

@@ -17,13 +17,12 @@ from scipy.linalg import block_diag
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference import noise_model, nuisance, nuisance_traces
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.channel import Channel
 from hyperleg_design.gap.inference.channels.discrepancy import MOTORS, load, shapes
 from hyperleg_design.gap.inference.endogenous import Factor
-from hyperleg_design.gap.inference.felt import SLOWEST_BANDS
-from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.samples import Samples, gather
+from hyperleg_design.gap.inference.samples import SLOWEST_BANDS, Samples, gather
 from hyperleg_design.gap.signals import filtering, resting
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import FilteredLog
@@ -75,7 +74,14 @@ class Evidence:
         return replace(factor, number=number, row=at, shows=0.0 if standing else factor.shows)
 
     def scaled(self, cause: Cause) -> Cause:
-        """A cause that pays for scaling torques."""
+        """Give the terms of a cause that scale torques the number of samples that they count for.
+
+        Args:
+            cause: linearised on samples of this evidence.
+
+        Returns:
+            The cause, with terms as of `paying`.
+        """
         return replace(
             cause,
             factors=tuple(
@@ -135,12 +141,28 @@ class _Set:
     tested: bool
 
     def row(self, key: tuple[str, int]) -> int | None:
-        """Place of a channel among the samples' rows."""
+        """Look up a channel among the samples' rows.
+
+        Args:
+            key: name and column of its residual.
+
+        Returns:
+            Its index; None where no log of this set has the channel.
+        """
         keys = [(row.residual_name, row.column) for row in self.samples.rows]
         return keys.index(key) if key in keys else None
 
     def shapes(self, key: tuple[str, int], waves: int) -> tuple[np.ndarray, np.ndarray, float]:
-        """Columns `(k, S)`, mean squares of the shapes `(k,)` and of the load, over logs."""
+        """Compute the discrepancy shapes of a channel and their sizes.
+
+        Args:
+            key: name and column of the channel's residual.
+            waves: random cosine features beside the named shapes.
+
+        Returns:
+            Samples of the shapes `(k, S)`, their mean squares `(k,)`, and the mean square of the
+            channel's load in slow bands, over the logs.
+        """
         columns: np.ndarray | None = None
         squares, loads = [], []
         for filtered, places in zip(self.filtered_logs, self.samples.where, strict=True):

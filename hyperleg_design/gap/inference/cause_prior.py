@@ -10,18 +10,37 @@ from scipy.special import log_ndtr
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.inference.assembly import Evidence
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis
-from hyperleg_design.gap.inference.prior_odds import prior_odds
 from hyperleg_design.gap.inference.rules import InferenceRules
+
+PER_PARAMETER = 0.5
+"""Log prior odds against each parameter, beside what the marginal likelihood takes for it."""
+MISSING, HALF = 4.0, 0.5
+"""Log odds against more than this share of what a model describes being missing (assumed: friction
+that nobody described is usual, and joints run in, but none runs freely, nor is a rotor without
+inertia)."""
 
 
 def log_prior(
     hypothesis: Hypothesis, evidence: Evidence, rules: InferenceRules, count: Mapping[str, int]
 ) -> float:
-    """Log prior probability of a set of causes at their values [nat]: each effect is as likely
-    as any other, at each of its places, or at all of them, but for one that acts at another place
-    already, and for friction of another kind where a joint rubs already. What stands in the
-    references, too, may be as small as a usual error: it is held so that no change takes its place.
+    """Compute the log prior probability of a set of causes at their values.
+
+    Each effect is as likely as any other, at each of its places, or at all of them. Likelier are an
+    effect that acts at another place already, and friction of another kind where a joint has some
+    already. A cause whose size is a usual calibration error is unlikely to be a fault
+    (`beyond_usual`); but one that acts in the references, too, may be as small as that, since it is
+    in the hypothesis so that no change takes its place.
+
+    Args:
+        hypothesis: the set, with values.
+        evidence: channels.
+        rules: of the inference.
+        count: places of each effect that is tried.
+
+    Returns:
+        The log probability, up to a constant [nat].
     """
     own = rules.cause
     found, place = 0.0, 0
@@ -130,3 +149,24 @@ def usual_error(
     if evidence.references and not standing:
         share = 0.0 if WEIGHED[parameter[0]].inertial else rules.discrepancy.change
     return share * rules.cause.usual * evidence.usual.get(parameter, 0.0)
+
+
+def prior_odds(cause: Cause, values: np.ndarray) -> float:
+    """State log prior odds of a cause over those of any other cause in its place.
+
+    Args:
+        cause: the effect and its place.
+        values: of its parameters `(k,)`.
+
+    Returns:
+        The log odds: what each free parameter costs, and what the effect itself states
+        (`Effect.rare`, `Effect.unseen`, `Effect.size_odds`) [nat].
+    """
+    free = int((~cause.shape).sum() if cause.linear else (cause.high > cause.low).sum())
+    effect = WEIGHED[cause.effect]
+    found = effect.rare if effect.flexible else -PER_PARAMETER * free + effect.rare
+    if cause.unseen:
+        found += effect.unseen
+    if effect.described and values[0] < HALF * cause.low[0] < 0:
+        found -= MISSING
+    return found + effect.size_odds(values, cause.usual, cause.declared, cause.beyond)

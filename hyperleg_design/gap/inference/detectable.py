@@ -45,7 +45,15 @@ class Detectable:
 
 
 def detectable(search: Search) -> tuple[Detectable, ...]:
-    """Of each effect and place with one parameter that is a size and a trace that grows with it."""
+    """State the smallest fault that logs would have shown nine times in ten, by effect and place.
+
+    Args:
+        search: that was made on the logs.
+
+    Returns:
+        Of each effect and place that the logs show: for each size of a linear effect, and for the
+        size of a nonlinear one that has a single size.
+    """
     entries: list[tuple[str, str, int, float, float, float]] = []
     for (name, place, standing), traced in search.traces.items():
         if standing or isinstance(traced, screen.NotJudged) or name in UNLISTED:

@@ -1,13 +1,14 @@
-"""Effects that scale the torque which the residual itself is made of, and what keeps them from
-explaining noise away.
+"""The term of the likelihood for effects that scale the measured torque, which is an endogenous
+regressor.
 
-A closed loop gives whatever torque is needed, model errors e included. An effect that takes a share
-of the believed torque for its own trace takes that share of e along, so that least squares would
-always rather scale torques down. The density of the believed torque has the missing term: with u =
-(1 + a phi) believed - needed, it is p(u) (1 + a phi), so the log-likelihood gains n mean log(1 + a
-phi). Causes that scale the same torque add up in it: a smaller torque constant and another ratio
-could together take away all of a torque of which each takes a part. A joint whose torque is less
-than the floor gains nothing so: that would only tell that the floor is high.
+A closed loop gives whatever torque is needed, model errors e included. The trace of an effect that
+takes a share of the believed torque contains that share of e, so that least squares would always
+scale torques down. The change of variables supplies what is missing: with u = (1 + a phi) believed
+- needed, the density of the believed torque is p(u) (1 + a phi), so the log-likelihood has the
+further term n mean log(1 + a phi). Causes that scale one torque share one term, because a smaller
+torque constant and another ratio could together take away all of a torque of which each takes a
+part. Where a joint's torque is smaller than the expected noise, a larger torque gains nothing: the
+gain would only show that the expected noise is too large.
 """
 
 from __future__ import annotations
@@ -25,14 +26,14 @@ from hyperleg_design.gap.inference.shrinking import Shrinking, shrinking
 from hyperleg_design.gap.signals.signals import Signals
 
 FAINT = 0.5
-"""Believed torque over the floor, root mean square, up to which a larger torque gains nothing; from
-the floor on all of it."""
+"""Believed torque over the expected noise, root mean square, up to which a larger torque gains
+nothing [-]; from 1 on it gains all, and linearly between."""
 LEAST = 0.05
-"""Factor below which the logarithm is cut."""
+"""Least factor on a torque of which the logarithm is taken [-]."""
 SMALL = 1e-3
-"""Change of a command over the torque that its motor is made for."""
+"""Step of a command's finite difference over the torque that its motor is made for [-]."""
 TICKS = 200
-"""Ticks of a log that stand for all."""
+"""Ticks of a log, evenly spaced, over which the mean is taken."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,12 +55,26 @@ class Factor:
     """Whether it is one of several of a cause, so that each counts in its own row alone."""
 
     def log(self, phi: np.ndarray) -> float:
-        """N mean log of the factor, of parameters `(causes,)`."""
+        """Compute the term of the log-likelihood: n times the mean logarithm of the factor.
+
+        Args:
+            phi: parameters in usual sizes `(causes,)`.
+
+        Returns:
+            The term [nat]; of a gain only the share `shows`.
+        """
         found = self.number * float(np.mean(np.log(self._left(phi))))
         return self.shows * found if found > 0 else found
 
     def slopes(self, phi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """First derivatives of `log` `(causes,)`, and its second ones with the sign turned."""
+        """Compute derivatives of `log`.
+
+        Args:
+            phi: parameters in usual sizes `(causes,)`.
+
+        Returns:
+            The gradient `(causes,)`, and the negative Hessian `(causes, causes)`.
+        """
         ratio = self.slope / self._left(phi)
         return self.number * ratio.mean(1), self.number * (ratio @ ratio.T) / ratio.shape[1]
 
@@ -107,8 +122,18 @@ def factors_of(
     usual: np.ndarray,
     values: np.ndarray | None = None,
 ) -> tuple[Factor | Shrinking, ...]:
-    """Of an effect at a place, at its values where they matter; none where it scales no torque that
-    the residual trusts.
+    """Compute the terms of the likelihood of an effect at a place: how it scales torques that the
+    residual of motion trusts, holds them back, or takes noise along in its trace.
+
+    Args:
+        samples: of the logs.
+        effect: its identifier.
+        location: its place.
+        usual: sizes of its parameters `(k,)`.
+        values: of its parameters, on which the terms of a nonlinear effect depend `(k,)`.
+
+    Returns:
+        The terms; none where it does nothing of this.
     """
     subject = samples.filtered_logs[0].signals.subject
     scaling = WEIGHED[effect]

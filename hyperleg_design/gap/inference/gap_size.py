@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from hyperleg_design.gap.inference.assembly import Evidence
-from hyperleg_design.gap.inference.crossed import Prediction
+from hyperleg_design.gap.inference.cross_validation import Prediction
 from hyperleg_design.gap.inference.hypothesis import Hypothesis
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.unlisted import makes_noise

@@ -11,10 +11,11 @@ import numpy as np
 from scipy.special import erfcx
 
 from hyperleg_design.gap.inference.assembly import Evidence
+from hyperleg_design.gap.inference.bounded_least_squares import within_bounds
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.endogenous import Factor, joined
-from hyperleg_design.gap.inference.fit import Cause, within_bounds
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.shrinking import Shrinking
 
@@ -88,14 +89,28 @@ class Hypothesis:
         return [slice(start, stop) for start, stop in pairwise(ends)]
 
     def values(self, place: int) -> np.ndarray:
-        """Parameters of one cause."""
+        """Look up the values of one cause's parameters.
+
+        Args:
+            place: index of the cause among `causes`.
+
+        Returns:
+            `(k,)`, in the parameters' units.
+        """
         cause = self.causes[place]
         return np.clip(
             cause.nulls + self.theta[self.parts[place]] * cause.usual, cause.low, cause.high
         )
 
     def deviation(self, place: int) -> np.ndarray:
-        """Standard deviations of one cause's parameters."""
+        """Look up the posterior standard deviations of one cause's parameters.
+
+        Args:
+            place: index of the cause among `causes`.
+
+        Returns:
+            `(k,)`, in the parameters' units.
+        """
         variance = np.diag(self.covariance)[self.parts[place]]
         return np.asarray(np.sqrt(np.maximum(variance, 0.0)) * self.causes[place].usual)
 
@@ -131,7 +146,12 @@ class Stack:
 
     @classmethod
     def of(cls, causes: Sequence[Cause], weight: np.ndarray) -> Stack:
-        """Of causes that are linearised."""
+        """Stack linearised causes.
+
+        Args:
+            causes: in their order.
+            weight: what a trace is multiplied by before products are taken `(S,)`.
+        """
         constant = np.zeros(len(weight))
         for one in causes:
             if not one.linear:
@@ -274,7 +294,15 @@ def _beyond(
 
 
 def shifted(products: np.ndarray, last: bool) -> np.ndarray:
-    """Products whose last column, a constant trace, is taken off the residual; without it."""
+    """Take a constant trace off the residual, in products of both.
+
+    Args:
+        products: of residual, columns and the constant trace, as of `reduced`.
+        last: whether the last column is a constant trace.
+
+    Returns:
+        Products of what is left of the residual and of the columns.
+    """
     if not last:
         return products
     found = products.copy()

@@ -13,13 +13,12 @@ from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.families import IN_DRIVES, INERTIAL
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.cause_prior import log_prior
 from hyperleg_design.gap.inference.channels.crossing import Crossing
-from hyperleg_design.gap.inference.channels.scale_fit import STEPS, fitted
+from hyperleg_design.gap.inference.channels.scale_fit import STEPS, first_scales, fitted
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.composed import after, carrying
 from hyperleg_design.gap.inference.endogenous import Factor, joined
-from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import (
     Candidate,
     Hypothesis,
@@ -29,6 +28,7 @@ from hyperleg_design.gap.inference.hypothesis import (
     shifted,
     solve,
 )
+from hyperleg_design.gap.inference.interactions import after, carrying
 from hyperleg_design.gap.inference.promises import Promise
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import Samples
@@ -83,7 +83,7 @@ class HypothesisFit:
         """No cause: noise and discrepancy alone."""
         channels, rules = self.evidence.channels, self.rules
         scales = screen.spread(
-            lambda one: fitted(one, one.start(rules), rules), channels, self.threads
+            lambda one: fitted(one, first_scales(one, rules), rules), channels, self.threads
         )
         prior = float(np.log(1 - rules.cause.probability))
         return Hypothesis((), np.zeros(0), np.zeros((0, 0)), tuple(scales), 0.0, prior)
@@ -95,8 +95,15 @@ class HypothesisFit:
         return np.array([each.log_posterior(scales, self.rules) for each, scales in channels])
 
     def candidate(self, promise: Promise, current: Hypothesis) -> Candidate | None:
-        """An effect linearised where it fits best, by Gauss-Newton steps at fixed scales, halved
-        where they lead to worse.
+        """Linearise an effect where it fits best beside a hypothesis, by Gauss-Newton steps at
+        fixed scales, halved where they lead to worse.
+
+        Args:
+            promise: the effect, its place, and where the steps begin.
+            current: the hypothesis.
+
+        Returns:
+            The candidate; None where no log shows it.
         """
         traced = self.traces[promise.name]
         if isinstance(traced, list):
@@ -325,8 +332,19 @@ def _near(values: ArrayLike, others: ArrayLike, usual: ArrayLike) -> bool:
 def eased(
     evidence: Evidence, scales: Sequence[Scales], rules: InferenceRules
 ) -> tuple[Scales, ...]:
-    """Scales whose noise and discrepancy under test are at most `EASED` times those of a healthy
-    robot: larger ones, which stand for a cause before it is found, would hide it.
+    """Limit the scales under test, so that a search for causes finds what noise and discrepancy
+    would explain otherwise.
+
+    Noise and discrepancy that were fitted without a cause stand for it and hide it. They are cut to
+    `EASED` times those of a healthy robot.
+
+    Args:
+        evidence: channels.
+        scales: fitted hyperparameters by channel.
+        rules: of the inference.
+
+    Returns:
+        The limited scales by channel.
     """
     prior = rules.discrepancy
     change, alone = np.log(EASED * prior.change), np.log(EASED * prior.standing)

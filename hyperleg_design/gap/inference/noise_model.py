@@ -38,13 +38,19 @@ POSTURE = 0.05
 FEWEST = 64
 """Samples of a position that tell whether its noise goes with speed."""
 LEAST = 1e-4
-"""Floor over the torque that a joint is made for, at least: what single precision and rounding in
-logs leave."""
+"""Least standard deviation over the torque that a joint is made for [-]: what single precision and
+rounding in logs leave."""
 
 
 def expected(filtered_log: FilteredLog, rules: NoiseRules) -> list[np.ndarray]:
-    """Standard deviation that each sample of each row may have, `(samples,)` a row, in the row's
-    unit.
+    """Compute the standard deviation that each sample may have when nothing is wrong.
+
+    Args:
+        filtered_log: of one log.
+        rules: shares of loads and friction that count as noise.
+
+    Returns:
+        For each row `(samples,)`, in the row's unit.
     """
     load, still = _loads(filtered_log)
     return [_row(filtered_log, row, load, still, rules) for row in range(len(filtered_log.rows))]
@@ -122,8 +128,8 @@ def _at(values: np.ndarray, band: Band) -> np.ndarray:
 
 
 def _loads(filtered_log: FilteredLog) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """By residual: size of what is balanced `(t, columns)`, and friction of the model
-    `(columns,)`.
+    """By residual: the quantity of which it is the unexplained part `(t, columns)`, and the dry
+    friction of the joints `(columns,)`.
     """
     signals = filtered_log.signals
     subject = signals.subject
@@ -252,8 +258,15 @@ def _shaken(signals: Signals) -> np.ndarray:
 
 
 def of_acceleration(filtered_log: FilteredLog, row: int) -> tuple[np.ndarray, np.ndarray]:
-    """Variance of each sample of a row that noise of accelerations feigns, and the mean square of
-    that noise's frequency `(samples,)` each.
+    """Compute the noise of a row that comes from noise of accelerations.
+
+    Args:
+        filtered_log: of one log.
+        row: one of its rows.
+
+    Returns:
+        Its variance at each sample, in the row's unit squared, and the mean square of its angular
+        frequency [1/s^2], `(samples,)` each.
     """
     bands = filtered_log.bands[row]
     if not bands:

@@ -49,11 +49,18 @@ if TYPE_CHECKING:
 
 
 def traces(signals: Signals, errors: Sequence[NuisanceParameter]) -> list[dict[str, np.ndarray]]:
-    """Trace of each error at one spread from its null, by residual `(t, columns)`.
+    """Compute what each nuisance parameter leaves at one spread from its null.
 
     Torque constants scale the torque that the motion needs, not the measured one, and so do gains
-    where nobody measured any: else all of them together could scale the noise away, masses and
-    loads along with it, which no motion contradicts.
+    where no torque was measured. With the measured torque all of them together could scale the
+    noise away, and masses and loads with it, which no motion contradicts.
+
+    Args:
+        signals: of a log.
+        errors: the nuisance parameters.
+
+    Returns:
+        For each of them, by residual `(t, columns)`.
     """
     needed = np.asarray(signals.rigid @ signals.subject.motor_from_joint.T)
     modelled = replace(
@@ -235,7 +242,15 @@ def _swung(signals: Signals, joint: str, place: int) -> dict[str, np.ndarray]:
 def columns(
     filtered_log: FilteredLog, errors: Sequence[NuisanceParameter]
 ) -> dict[int, np.ndarray]:
-    """Samples of all errors at one spread each, by row `(errors, samples)`."""
+    """Sample what each nuisance parameter leaves at one spread from its null.
+
+    Args:
+        filtered_log: of one log.
+        errors: the nuisance parameters.
+
+    Returns:
+        By index of the row `(errors, samples)`.
+    """
     found = {
         row: np.zeros((len(errors), filtered_log.count(row)))
         for row in range(len(filtered_log.rows))

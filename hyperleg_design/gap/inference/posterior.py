@@ -169,7 +169,14 @@ def _rivals(result: Result, best: Hypothesis) -> tuple[tuple[Hypothesis, Candida
 
 
 def expanded(candidates: Sequence[Candidate]) -> list[tuple[int, Candidate]]:
-    """Place of each cause among those of all candidates, with its candidate."""
+    """Pair each cause of a hypothesis with its candidate.
+
+    Args:
+        candidates: of the hypothesis.
+
+    Returns:
+        Index of each cause among those of all candidates, and its candidate.
+    """
     found, place = [], 0
     for one in candidates:
         for _ in one.causes:

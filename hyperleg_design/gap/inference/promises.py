@@ -12,10 +12,10 @@ from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.spanned import SpannedEffect
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.endogenous import Factor, factors_of, held_back_whole
-from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import ALIKE, Name, Solution, Stack, solve
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.shrinking import Shrinking
@@ -88,12 +88,15 @@ class Promises:
         self._scaling: dict[Name, Sequence[Sequence[Factor | Shrinking]]] = {}
 
     def options(self, name: Name) -> tuple[list[Cause | None], list[np.ndarray]]:
-        """Variants of an effect at a place, or columns of its starts; none where the logs do not
-        show it.
+        """List the variants of a linear effect at a place, or the columns of a nonlinear one's
+        starts.
+
+        Args:
+            name: of the effect and place.
 
         Returns:
             Causes, None for starts, and their columns, unweighted `(k, S)` each, or shorter where
-            they end with the logs under test.
+            they end with the logs under test; none where the logs do not show the effect.
         """
         traced = self.traces[name]
         if isinstance(traced, screen.NotJudged):
@@ -103,7 +106,15 @@ class Promises:
         return [None] * len(traced.columns), list(traced.columns[:, None])
 
     def scaling(self, name: Name) -> Sequence[Sequence[Factor | Shrinking]]:
-        """How each option of an effect at a place scales the torques that residuals are made of."""
+        """Compute how each option of an effect at a place scales the torques that residuals are
+        made of.
+
+        Args:
+            name: of the effect and place.
+
+        Returns:
+            Terms of the likelihood, by option.
+        """
         if name not in self._scaling:
             traced = self.traces[name]
             assert not isinstance(traced, screen.NotJudged)
@@ -138,7 +149,12 @@ class Promises:
         ]
 
     def crossing(self, name: Name) -> Crossing:
-        """Products of the columns of all options of an effect at a place, one after the other."""
+        """Compute the products of the columns of all options of an effect at a place with the
+        channels.
+
+        Args:
+            name: of the effect and place.
+        """
         if name not in self._crossings:
             weight = self.evidence.weight
             weighted = [

@@ -16,7 +16,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference import screen
-from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.hypothesis import Hypothesis, Name
 from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit, eased
 from hyperleg_design.gap.inference.promises import Promises

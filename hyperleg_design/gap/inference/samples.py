@@ -1,8 +1,7 @@
-"""All logs of a diagnosis as one list of samples over their floor.
+"""All logs of a diagnosis as one list of samples, each with the noise that is expected of it.
 
-A *group* is one row in one band, pooled over the logs; the noise of a group is one unknown scale on
-its floor. A *part* is a stretch of one log; parts of every log are dealt to the folds of
-cross-validation.
+A *group* is one row of a residual in one frequency band, pooled over the logs. A *part* is a
+stretch of one log; the parts of every log are dealt to the folds of the cross-validation.
 """
 
 from __future__ import annotations
@@ -12,14 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hyperleg_design.gap.inference.felt import felt_share
 from hyperleg_design.gap.signals.filtering import FilteredLog, Row, traced
 from hyperleg_design.gap.signals.signals import Signals
 
 FOLDS = 5
+"""Folds of the cross-validation."""
 MOST_PARTS = 20
+"""Parts of all logs together, at most."""
 BLOCK = 1.0
 """Length of the blocks that the bootstrap draws [s]."""
+SLOWEST_BANDS = 3
+"""Bands of a channel whose load sizes its discrepancy: in faster ones it is mostly noise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +38,7 @@ class Samples:
     share: np.ndarray
     """Independent numbers that each stands for `(S,)`."""
     felt: np.ndarray
-    """Share of the torque that motion needs which drives show `(S,)`."""
+    """How much of a trace that follows accelerations counts, see `felt_share` `(S,)`."""
     row: np.ndarray
     """Place in `rows` `(S,)`."""
     group: np.ndarray
@@ -177,3 +179,32 @@ def _parts(filtered_logs: Sequence[FilteredLog]) -> list[int]:
         wanted = FOLDS if duration < 30 else 2 * FOLDS
         found.append(wanted if wanted <= most else (FOLDS if most >= FOLDS else most))
     return found
+
+
+def felt_share(filtered_log: FilteredLog, row: int) -> np.ndarray:
+    """Compute how much of the torque that fast motion needs appears in the drives' torque.
+
+    Noise of sensors, and links that swing on their belts, are in the accelerations of a log, but no
+    motor gives torque for them. In each fast band the share is the coefficient of the regression of
+    the drives' torque on the needed one, from 0 to 1.
+
+    Args:
+        filtered_log: of one log.
+        row: one of its rows.
+
+    Returns:
+        By sample, from 0 to 1, the same all over a band `(samples,)`; 1 of slow bands and of rows
+        that are no joints.
+    """
+    signals, one = filtered_log.signals, filtered_log.rows[row]
+    band = filtered_log.labels(row)[0]
+    share = np.ones(len(band))
+    if one.residual_name != "motion":
+        return share
+    columns = signals.rigid[:, one.column], signals.residual["motion"][:, one.column]
+    needed, left = filtered_log.sample(row, np.stack(columns))
+    for fast in np.unique(band[band >= SLOWEST_BANDS]).tolist():
+        mine = band == fast
+        square = max(float(needed[mine] @ needed[mine]), 1e-300)
+        share[mine] = np.clip(1 + float(left[mine] @ needed[mine]) / square, 0.0, 1.0)
+    return share

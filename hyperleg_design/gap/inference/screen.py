@@ -1,4 +1,6 @@
-"""What every effect leaves at every place: linearised, or traces from where its search begins."""
+"""What every effect leaves in the residuals at every place: columns of a linear effect, or the
+traces at which the search for the values of a nonlinear one begins.
+"""
 
 from __future__ import annotations
 
@@ -13,15 +15,15 @@ import numpy as np
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.spanned import SpannedEffect
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.endogenous import factors_of
-from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 
 SHOWN = 0.02
-"""Root mean square of a trace over the floor, at its usual size in the group where it shows most,
-below which these logs cannot show it."""
+"""Root mean square of a trace over the expected noise, at its usual size in the group where it
+shows most, below which these logs cannot show it [-]."""
 UNEXCITED = "these logs do not excite it"
 """Why an effect at a place is not judged."""
 MOST_STARTS = 18
@@ -58,12 +60,21 @@ class Starts:
 
 
 Traces: TypeAlias = NotJudged | list[Cause] | Starts
-"""Why an effect at a place is not judged; it linearised, in each variant; or where searches
-begin."""
+"""Of an effect at a place: why it is not judged; its linearised variants; or where the searches for
+its values begin."""
 
 
 def spread(job: Callable[[T], R], items: Sequence[T], threads: int) -> list[R]:
-    """Results in the order of the items, whatever the number of threads."""
+    """Apply a function to items on several threads.
+
+    Args:
+        job: the function.
+        items: its arguments.
+        threads: that share the work.
+
+    Returns:
+        The results, in the order of the items.
+    """
     if threads <= 1 or len(items) < 2:
         return [job(item) for item in items]
     with ThreadPoolExecutor(threads) as pool:
@@ -71,7 +82,12 @@ def spread(job: Callable[[T], R], items: Sequence[T], threads: int) -> list[R]:
 
 
 def places(subject: Subject, effects: Iterable[str] | None = None) -> list[tuple[str, str]]:
-    """Effects and where they can sit on a robot."""
+    """List the effects, each at every place where it can sit on a robot.
+
+    Args:
+        subject: the robot.
+        effects: identifiers; all that compete by default.
+    """
     return [
         (name, place)
         for name in (WEIGHED if effects is None else effects)
@@ -80,7 +96,18 @@ def places(subject: Subject, effects: Iterable[str] | None = None) -> list[tuple
 
 
 def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarray) -> Cause | None:
-    """An effect linearised at some values `(k,)`; None where no log shows it."""
+    """Linearise an effect at a place.
+
+    Args:
+        samples: of the logs.
+        effect: the effect.
+        location: its place.
+        values: of its parameters, at which a nonlinear effect is linearised by differences; of a
+            linear one, only those that shape its trace matter `(k,)`.
+
+    Returns:
+        The cause; None where no log shows it.
+    """
     subject = samples.filtered_logs[0].signals.subject
     usual = effect.usual(location, subject)
     low, high = effect.bounds(location, subject)
@@ -138,8 +165,12 @@ def _same_place(subject: Subject, one: str, other: str) -> bool:
 
 
 def reach(samples: Samples, columns: np.ndarray) -> float:
-    """Largest root mean square over the groups of columns `(k, S)` over the floor, summed over the
-    columns.
+    """Compute how clearly columns show: their root mean square over the expected noise, in the
+    group of samples where it is largest.
+
+    Args:
+        samples: of the logs.
+        columns: traces, whose squares are summed `(k, S)`.
     """
     squares = samples.share * np.einsum("ks,ks->s", columns, columns) / np.square(samples.floor)
     square = np.bincount(samples.group, squares, samples.groups)
@@ -148,7 +179,15 @@ def reach(samples: Samples, columns: np.ndarray) -> float:
 
 
 def under_test(cause: Cause, tests: Samples) -> Cause | None:
-    """A linear cause in the first of its samples; None where these do not show it."""
+    """Cut a linear cause to the logs under test.
+
+    Args:
+        cause: on the samples of all logs, those under test first.
+        tests: samples of the logs under test.
+
+    Returns:
+        The cause on these alone; None where they do not show it.
+    """
     columns = cause.columns[:, : len(tests.value)]
     if reach(tests, columns) < SHOWN:
         return None
@@ -158,7 +197,13 @@ def under_test(cause: Cause, tests: Samples) -> Cause | None:
 
 
 def trace(samples: Samples, effect: Effect, location: str) -> Traces:
-    """What an effect leaves at a place, or why these samples cannot show it."""
+    """Compute what an effect leaves at a place, or why these samples cannot show it.
+
+    Args:
+        samples: of the logs.
+        effect: the effect.
+        location: its place.
+    """
     missing = lacking(effect, location, [s.signals for s in samples.filtered_logs])
     if missing:
         return NotJudged(effect.identifier, location, missing)
@@ -187,14 +232,25 @@ def trace(samples: Samples, effect: Effect, location: str) -> Traces:
 
 
 def lacking(effect: Effect, location: str, signals: Sequence[Signals]) -> str:
-    """What the logs lack to show an effect at all, or nothing."""
+    """Say what logs lack to show an effect at all.
+
+    Args:
+        effect: the effect.
+        location: its place.
+        signals: of the logs.
+
+    Returns:
+        The reason; empty where they lack nothing.
+    """
     subject = signals[0].subject
     values = effect.example(location, subject)[None]
     residual_names = set().union(*(effect.trace(s, location, values) for s in signals))
     if not residual_names:
         return "these logs lack the signals that would show it"
     if not residual_names & set().union(*(s.residual for s in signals)):
-        return f"these logs have no balance in which it shows ({', '.join(sorted(residual_names))})"
+        return (
+            f"these logs lack the residuals in which it shows: {', '.join(sorted(residual_names))}"
+        )
     return ""
 
 

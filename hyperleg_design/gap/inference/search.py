@@ -12,10 +12,10 @@ import numpy as np
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.endogenous import Factor
-from hyperleg_design.gap.inference.fit import Cause
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis, Name, Stack
 from hyperleg_design.gap.inference.hypothesis_fit import CLOSE, HypothesisFit, eased
 from hyperleg_design.gap.inference.promises import Promise, Promises
@@ -207,7 +207,15 @@ class Search:
         return promises[0].gain + max(current.score - score, 0.0) > enough
 
     def best_of(self, promises: Sequence[Promise], current: Hypothesis) -> Hypothesis | None:
-        """The best fit of an effect at a place beside a hypothesis, from several starts."""
+        """Fit an effect at a place beside a hypothesis from several starts.
+
+        Args:
+            promises: the starts, or the best variant of a linear effect.
+            current: the hypothesis.
+
+        Returns:
+            The best fit; None where no log shows the effect.
+        """
         known = self._known((*current.candidates, promises[0]))
         if known is not None:
             return known
@@ -230,8 +238,15 @@ class Search:
     def everywhere(
         self, promises: Mapping[Name, Sequence[Promise]], current: Hypothesis
     ) -> list[tuple[float, Candidate]]:
-        """Linear effects at all of their places, and what they gain beside a hypothesis at its
-        scales, best first.
+        """Join linear effects at all of their places, and compute what they gain beside a
+        hypothesis at its scales.
+
+        Args:
+            promises: of effects at single places.
+            current: the hypothesis.
+
+        Returns:
+            Gains [nat] and candidates, best first.
         """
         scales = eased(self.evidence, current.scales, self.rules)
         acting = {(one.effect, one.standing) for one in current.candidates}
@@ -311,8 +326,16 @@ def _traced(evidence: Evidence, place: tuple[str, str]) -> list[screen.Traces]:
 
 
 def ungaining(cause: Cause) -> Cause:
-    """A cause that gains nothing by scaling torques up: where all torques are scaled, masses and
-    friction may be, too, and all that is left to gain is noise nearer to the expected one.
+    """Keep a cause from gaining by larger torques.
+
+    Where an effect scales the torques at all of its places, masses and friction may be larger by as
+    much, and the gain would be noise that is nearer to the expected one.
+
+    Args:
+        cause: the effect at one place.
+
+    Returns:
+        The cause, whose terms of the likelihood charge for smaller torques alone.
     """
     if not cause.factors:
         return cause

@@ -1,14 +1,16 @@
-"""Noise of the logs that belts and gears take along in their traces, and what keeps them from
-explaining it away.
+"""The term of the likelihood for belts and gears, whose traces contain noise of the residual
+(errors in variables).
 
-Noise of accelerations, and of forces under the feet, is in the residual, and in the load that
-stretches a belt, too: with encoders at the joints a belt's trace takes the share x = J compliance
-omega^2 of it along, all of it where the rotor would ring. Noise of which a share f is in the load
-shrinks to f (1 - x)^2 + 1 - f, and least squares would find a belt in any noise. With encoders at
-the rotors, a belt that stiffens, or has its joint's friction behind it, is stretched by the torque
-that its motor gives, noise included. How much a trace takes along is measured: noise is added to
-the log, and what comes of it in the trace is compared with what comes of it in the residual, band
-by band.
+Noise of accelerations, and of forces under the feet, is in the residual and also in the load that
+stretches a belt. With encoders at the joints the trace of a belt contains the share
+x = J compliance omega^2 of it: all of it at the frequency at which the rotor would ring. A variance
+of noise of which the share f is in the load shrinks to f (1 - x)^2 + 1 - f when the belt is fitted,
+so that least squares would find a belt in any noise. With encoders at the rotors, a belt that
+stiffens, or one with its joint's friction behind it, is stretched by the torque that its motor
+gives, noise included.
+
+x is measured: noise is added to the log, and its effect on the trace is compared with that on the
+residual, band by band.
 """
 
 from __future__ import annotations
@@ -57,12 +59,24 @@ class Shrinking:
     row: int
 
     def log(self, phi: np.ndarray) -> float:
-        """Log of the density by which noise that shrinks must not gain, of the parameter `(1,)`."""
+        """Compute the term of the log-likelihood that offsets what shrinking noise gains.
+
+        Args:
+            phi: the parameter in usual sizes `(1,)`.
+
+        Returns:
+            The term, never positive [nat].
+        """
         return 0.5 * float(self.number @ np.log(self._left(phi)))
 
     def slopes(self, phi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """First derivative of `log` `(1,)`, and its second with the sign turned, where that is a
-        maximum `(1, 1)`.
+        """Compute derivatives of `log`.
+
+        Args:
+            phi: the parameter in usual sizes `(1,)`.
+
+        Returns:
+            The first derivative `(1,)`, and the negative second one, at least 0 `(1, 1)`.
         """
         left = self._left(phi)
         part = np.where(2 * self.slope * phi >= self.square * phi**2, self.part, 0.0)

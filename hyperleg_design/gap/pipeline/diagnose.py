@@ -19,8 +19,8 @@ from hyperleg_design.gap.inference.detectors.slipping import slips
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
-from hyperleg_design.gap.pipeline.beside_balances import of_feet, of_imu
-from hyperleg_design.gap.pipeline.judged import judge_signals
+from hyperleg_design.gap.pipeline.detected_causes import of_feet, of_imu
+from hyperleg_design.gap.pipeline.judge import judge_signals
 from hyperleg_design.gap.results.diagnosis import Diagnosis
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject

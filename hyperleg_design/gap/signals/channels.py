@@ -1,5 +1,5 @@
-"""Channels of a log: onto even ticks, of motors under any of their names, and through matrices that
-keep what is unknown unknown.
+"""Signals of a log as arrays: collected under any of the motors' names, interpolated onto even
+ticks, and multiplied by matrices so that unknown values (NaN) stay unknown.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""From a log to `Signals`: an even time base, motion smoothed without delay, torques believed, and
-the residuals of the residuals.
+"""From a log to `Signals`: an even time base, motion smoothed without delay, the motor torques that
+are believed, and the residuals.
 
-Motion comes from `smoothing` (a fixed-interval smoother whose noise the log itself tells).
-Everything else is interpolated onto the same ticks and not smoothed: whoever compares torques
-filters both sides alike. Gaps in the clock or in a joint's positions are bridged, and marked as not
+Motion comes from `smoothing`, a fixed-interval smoother whose noise is estimated from the log.
+Everything else is interpolated onto the same ticks and not smoothed, because residuals and traces
+are filtered alike later. Gaps in the clock or in a joint's positions are bridged, and marked as not
 valid.
 """
 
@@ -36,8 +36,8 @@ from hyperleg_design.gap.signals.smoothing import Smooth, smooth
 from hyperleg_design.simulation.drives import limits
 
 EDGE = 4.0
-"""Radians of the slowest smoother's crossover that are left out beside gaps and at the ends of a
-log."""
+"""Time that is left out beside gaps and at the ends of a log, times the crossover frequency of the
+slowest smoother [rad]."""
 STOP = 0.003
 """Distance from the end of a joint's range within which its stop may push [rad]; assumed, a few
 steps of a sensor."""
@@ -45,7 +45,7 @@ NO_STOP = 0.1
 """Distance beyond its range that shows that a joint has no stop there [rad]; assumed, more than any
 stop gives way."""
 LONGEST_EDGE = 0.25
-"""[s] However slow the smoother."""
+"""Most of that time, however slow the smoother is [s]."""
 
 
 def condition(log: Log, subject: Subject) -> Signals:

@@ -1,13 +1,12 @@
-"""One zero-phase filter for residuals and traces: each row cut into bands, each band at about the
-rate that it can tell anything at.
+"""One zero-phase filter for residuals and traces: each row is cut into frequency bands, and each
+band is sampled at about twice its upper frequency.
 
-Bands share the spectrum smoothly, sum of squared gains 1 below a row's cutoff, so that the mean
+Bands overlap smoothly. Their squared gains add up to 1 below a row's cutoff, so that the mean
 squares of all bands add up to that of the filtered row. The filter is linear, unknown ticks count
-as zero on both sides, and what it does to a residual it does to a
-trace: it cancels. In a band [a, b] a row of duration T holds 2 (b - a) T independent numbers; the
-    samples of a band number a few
-more, and each counts for its `share`. So noise that is coloured over the whole band is nearly white
-in each.
+as zero, and residuals and traces pass the same filter, so it changes no size that is fitted. In a
+band [a, b] a row of duration T holds 2 (b - a) T independent numbers. A band has more samples than
+that, so each counts for its `share`. Noise that is coloured over all bands is nearly white
+within one.
 """
 
 from __future__ import annotations
@@ -34,8 +33,8 @@ OF_SPEEDS = 0.5
 """The same of speeds that are not smoothed, against some that are: there the smoother lets 98 %
 pass."""
 WITHOUT_BANDWIDTH = 10.0
-"""Cutoff where the log does not tell it [Hz]."""
-OF_BALANCE = {"base": 10.0, "ground": 20.0}
+"""Cutoff of joints whose smoother's bandwidth is unknown [Hz]."""
+WITHOUT_JOINTS = {"base": 10.0, "ground": 20.0}
 """Cutoff of residuals whose rows are no joints [Hz]."""
 OVERLAP = 0.15
 """Half width of the transition between bands, over its frequency."""
@@ -183,8 +182,8 @@ def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> Filtere
 
 def _cutoff(signals: Signals, residual_name: str, column: int) -> float:
     most = OF_RATE / signals.step
-    if residual_name in OF_BALANCE:
-        return min(OF_BALANCE[residual_name], most)
+    if residual_name in WITHOUT_JOINTS:
+        return min(WITHOUT_JOINTS[residual_name], most)
     if residual_name not in ("motion", "transmission"):
         return min(HIGHEST, most)
     joints, share = np.array([column]), OF_BANDWIDTH

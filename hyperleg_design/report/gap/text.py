@@ -10,7 +10,7 @@ from hyperleg_design.gap.checks.coverage import REMEDY
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.logs.columns import unit
 from hyperleg_design.gap.logs.sampling import Column
-from hyperleg_design.gap.pipeline.beside_balances import APART
+from hyperleg_design.gap.pipeline.detected_causes import APART
 from hyperleg_design.gap.playback.added import Changed, Replayed
 from hyperleg_design.gap.playback.measure import Gap
 

@@ -11,6 +11,7 @@ from causes import unbounded
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.assembly import evidence_of
+from hyperleg_design.gap.inference.channels.scale_fit import first_scales
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
 from hyperleg_design.gap.inference.promises import LARGEST, Promises
@@ -133,7 +134,7 @@ def promised(signals, name, link, values, beside=0.0):
     }
     evidence = evidence_of([replace(signals, residual=residual)], [], RULES)
     promises = Promises(evidence, RULES, traces_of(evidence, [(name, link)], 1))
-    scales = (replace(one.start(RULES), standing=np.log(0.1)) for one in evidence.channels)
+    scales = (replace(first_scales(one, RULES), standing=np.log(0.1)) for one in evidence.channels)
     return promises.beside((), tuple(scales))
 
 

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.screen import (
     NotJudged,
     lacking,

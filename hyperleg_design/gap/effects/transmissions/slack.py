@@ -93,7 +93,15 @@ class _Rubbing:
 
     @classmethod
     def of(cls, signals: Signals, motor: int, at_rotor: bool, part: float) -> _Rubbing:
-        """A part of the friction, on a rotor, or on joints where the rotor's motion is logged."""
+        """Collect a part of the friction: on a rotor, or on joints where the rotor's motion is
+        logged.
+
+        Args:
+            signals: of a log.
+            motor: index of the motor.
+            at_rotor: whether the friction acts on the rotor.
+            part: share of the friction that acts there [-].
+        """
         subject, coulomb = signals.subject, dry_friction(signals)
         inertia = _inertia(signals, motor) if at_rotor else rotor(subject, motor)
         slowed = np.broadcast_to(signals.step / inertia, signals.time.shape)

@@ -23,22 +23,13 @@ import numpy as np
 from scipy.linalg.lapack import dtrtrs
 
 from hyperleg_design.gap.inference.channels.likelihood import Likelihood
+from hyperleg_design.gap.inference.channels.residual import Residual
 from hyperleg_design.gap.inference.channels.scales import Scales, log_prior_of_scales
 from hyperleg_design.gap.inference.channels.spectrum import Spectrum
 from hyperleg_design.gap.inference.rules import InferenceRules
 
 NOISES = 3
 """Noises of a channel whose spectra are kept."""
-
-
-@dataclass(frozen=True, eq=False)
-class Residual:
-    """Sums of products of a channel's residual, or of what is left of it, by cell."""
-
-    cross: np.ndarray
-    """With the discrepancy columns `(cells, k)`."""
-    square: np.ndarray
-    """With itself `(cells,)`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,8 +95,15 @@ class Channel:
         return np.maximum(np.where(alike >= 0, noise[alike], 1.0), rules.noise.least)
 
     def noisy(self, noise: np.ndarray, rules: InferenceRules) -> tuple[float, float]:
-        """Log prior densities of the noise under test [nat]: of a healthy robot, and where
-        something unlisted makes noise; the prior probabilities of both included.
+        """Compare noise of a healthy robot with noise of something unlisted.
+
+        Args:
+            noise: variance over the expected one, by band `(b,)`.
+            rules: of the inference.
+
+        Returns:
+            Log prior densities of the noise under test, if the robot is healthy, and if something
+            unlisted makes noise; the prior probabilities of both included [nat].
         """
         own = rules.noise
         spread = np.where(self.bands_alike >= 0, own.spread, own.alone_spread)
@@ -140,16 +138,6 @@ class Channel:
         own = [place for place, mine in zip(self.places, tested, strict=True) if mine]
         return np.sort(np.concatenate(own))
 
-    def start(self, rules: InferenceRules) -> Scales:
-        """Scales to begin with: noise that explains everything."""
-        count = len(self.numbers)
-        square = np.bincount(self.band, self.products[:, -1, -1], count)
-        weight = rules.noise.weight
-        noise = np.maximum((weight + square) / (weight + self.numbers), 1.0)
-        prior = rules.discrepancy
-        standing = prior.referenced if self.referenced else prior.standing
-        return Scales(noise, float(np.log(standing)), float(np.log(prior.change)))
-
     @cached_property
     def whole_residual(self) -> Residual:
         """Products of the residual as it is."""
@@ -166,7 +154,11 @@ class Channel:
         )
 
     def shows(self, columns: np.ndarray) -> np.ndarray:
-        """Whether each of some columns `(m, S)` is anything in this channel `(m,)`."""
+        """Tell which columns are not zero everywhere in this channel `(m,)`.
+
+        Args:
+            columns: over all samples `(m, S)`.
+        """
         found = np.zeros(len(columns), bool)
         for cut in self._cuts:
             found |= columns[:, cut].any(1)
@@ -229,7 +221,14 @@ class Channel:
         return Residual(self.whole_residual.cross - taken[:, :-1], square)
 
     def without(self, trace: np.ndarray) -> Channel:
-        """The channel whose residual lacks a trace `(S,)`, weighted as the residual."""
+        """Subtract a trace from the residual.
+
+        Args:
+            trace: weighted as the residual `(S,)`.
+
+        Returns:
+            The channel with what is left as its residual.
+        """
         white = list(self.whitened)
         for cell, place in enumerate(self.places):
             if trace[place].any():
@@ -243,8 +242,16 @@ class Channel:
         found[:, k, k] += own[:, 0, 0] - 2 * cross[:, k, 0]
         return replace(self, products=found, whitened=tuple(white))
 
-    def _summed(self, noise: np.ndarray, products: np.ndarray) -> np.ndarray:
-        """Products by cell `(cells, ...)` over the noise, by session `(sessions, ...)`."""
+    def summed(self, noise: np.ndarray, products: np.ndarray) -> np.ndarray:
+        """Sum products over the noise by session.
+
+        Args:
+            noise: variance over the expected one, by band `(b,)`.
+            products: by cell `(cells, ...)`.
+
+        Returns:
+            `(sessions, ...)`.
+        """
         share = (self.session == np.arange(len(self.tested))[:, None]) / noise[self.band]
         return np.asarray(np.tensordot(share, products, 1))
 
@@ -263,11 +270,23 @@ class Channel:
         return spectrum
 
     def spectrum(self, noise: np.ndarray) -> Spectrum:
-        """Spectrum of the discrepancy columns at some noise by band `(b,)`."""
+        """Decompose the discrepancy columns of each session, once for all scales of the
+        discrepancy.
+
+        Args:
+            noise: variance over the expected one, by band `(b,)`.
+        """
         return self._spectra(np.ascontiguousarray(noise, float).tobytes())
 
     def change_scales(self, scales: Scales) -> np.ndarray:
-        """D of each session `(sessions,)`; 0 where a single session cannot tell it."""
+        """Compute the scale d_s of the change in each session.
+
+        Args:
+            scales: hyperparameters.
+
+        Returns:
+            `(sessions,)`; 0 where there is a single session, which shows no change.
+        """
         if not self.changes:
             return np.zeros(len(self.tested))
         return np.exp(scales.change + np.where(self.tested, scales.new, 0.0))
@@ -311,7 +330,7 @@ class Channel:
             `(sessions (k - steady) + k, m)`.
         """
         spectrum, change = self.spectrum(scales.noise), self.change_scales(scales)
-        cross = self._summed(scales.noise, cross)
+        cross = self.summed(scales.noise, cross)
         turned, shrunk = spectrum.turned(cross), spectrum.shrunk(change)
         shared, _ = dtrtrs(
             spectrum.factor(change, scales.standing),
@@ -330,7 +349,7 @@ class Channel:
         """
         residual = self.whole_residual if residual is None else residual
         spectrum = self.spectrum(noise)
-        cross = self._summed(noise, residual.cross)[:, :, None]
+        cross = self.summed(noise, residual.cross)[:, :, None]
         square = float(residual.square @ (1 / noise[self.band]))
         return Likelihood(spectrum, cross, square, float(self.numbers @ np.log(noise)))
 
@@ -346,49 +365,35 @@ class Channel:
         )
 
     def log_prior_of_noise(self, noise: np.ndarray, rules: InferenceRules) -> float:
-        """Log prior density of the noise by band `(b,)`, up to a constant [nat]."""
+        """Compute the log prior density of the noise, up to a constant [nat].
+
+        Args:
+            noise: variance over the expected one, by band `(b,)`.
+            rules: of the inference.
+        """
         taught = np.delete(noise, self.bands_tested)
         found = -0.5 * rules.noise.weight * float(np.sum(np.log(taught) + 1 / taught))
         return found + float(np.logaddexp(*self.noisy(noise, rules)))
 
     def log_prior_of_scales(self, scales: Scales, rules: InferenceRules) -> float:
-        """Log prior density of the scales of the discrepancy, up to a constant [nat]."""
+        """Compute the log prior density of the scales of the discrepancy, up to a constant [nat].
+
+        Args:
+            scales: hyperparameters.
+            rules: of the inference.
+        """
         return log_prior_of_scales(scales, rules.discrepancy, self.referenced, self.changes)
 
     def log_posterior(
         self, scales: Scales, rules: InferenceRules, residual: Residual | None = None
     ) -> float:
-        """Log-likelihood of a residual, as it is by default, and log prior of the hyperparameters
-        [nat].
+        """Add up the log-likelihood of a residual and the log prior of the hyperparameters [nat].
+
+        Args:
+            scales: hyperparameters.
+            rules: of the inference.
+            residual: the channel's whole residual by default.
         """
         prior = self.log_prior_of_noise(scales.noise, rules)
         prior += self.log_prior_of_scales(scales, rules)
         return self.log_likelihood(scales, residual) + prior
-
-    def discrepancy(
-        self, scales: Scales, residual: Residual | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Posterior of w + delta_s: means `(sessions, k)` and covariances `(sessions, k, k)`.
-
-        Args:
-            scales: hyperparameters.
-            residual: as it is by default.
-        """
-        residual = self.whole_residual if residual is None else residual
-        spectrum, change = self.spectrum(scales.noise), self.change_scales(scales)
-        axes, own = spectrum.axes, slice(self.steady, None)
-        cross = self._summed(scales.noise, residual.cross)[:, :, None]
-        turned = spectrum.turned(cross)
-        inverse = np.linalg.inv(spectrum.factor(change, scales.standing))
-        shared = np.exp(2 * scales.standing) * (inverse.T @ inverse)
-        mean = shared @ spectrum.left(change, cross, turned)
-        across = spectrum.beside.swapaxes(1, 2)
-        gained = axes * (change[:, None] ** 2 * spectrum.shrunk(change))[:, None, :]
-        means = np.repeat(mean.T, len(change), 0)
-        means[:, own] += (gained @ (turned - across @ mean))[:, :, 0]
-        # the covariance of w + delta is that of the change, given w, and of what w alone moves
-        kept = np.repeat(np.eye(self.columns)[None], len(change), 0)
-        kept[:, own] -= gained @ across
-        covariances = kept @ shared @ kept.swapaxes(1, 2)
-        covariances[:, own, own] += gained @ axes.swapaxes(1, 2)
-        return means, covariances

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hyperleg_design.gap.inference.channels.channel import Channel, Residual
+from hyperleg_design.gap.inference.channels.channel import Channel
+from hyperleg_design.gap.inference.channels.residual import Residual
 from hyperleg_design.gap.inference.channels.scales import Scales
 
 
@@ -27,7 +28,12 @@ class Crossing:
 
     @classmethod
     def of(cls, channels: Sequence[Channel], columns: np.ndarray) -> Crossing:
-        """Of columns weighted as the residual `(m, S)`."""
+        """Compute the products of columns with all channels.
+
+        Args:
+            channels: of the evidence.
+            columns: weighted as the residual `(m, S)`.
+        """
         present = columns != 0  # numpy looks through truth values many times faster than numbers
         shown = [np.flatnonzero(one.shows(present)) for one in channels]
         made = [(np.zeros((0, 0, 0)), np.zeros((0, 0, 0)))] * len(shown)

@@ -20,6 +20,7 @@ NEIGHBOURS = 2
 SEED = 7
 """Of the random features, which are the same for every robot."""
 MOTORS = ("drive", "control")
+"""Residuals of motor torques, whose shapes are functions of the motor's command and speed."""
 
 
 def shapes(signals: Signals, residual: str, column: int, waves: int) -> np.ndarray:
@@ -49,7 +50,17 @@ def shapes(signals: Signals, residual: str, column: int, waves: int) -> np.ndarr
 
 
 def load(signals: Signals, residual: str, column: int) -> np.ndarray:
-    """What the channel balances, by the model where it can be `(t,)`, in the residual's unit."""
+    """Compute the quantity whose size scales a channel's discrepancy: the torque or speed of which
+    the residual is the unexplained part, from the model where possible.
+
+    Args:
+        signals: a conditioned log of t ticks.
+        residual: kind of the channel's residual.
+        column: of that residual.
+
+    Returns:
+        `(t,)`, in the residual's unit.
+    """
     if residual == "motion":
         return np.asarray(signals.rigid[:, column])
     if residual in MOTORS and signals.command is not None:

@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.gap.inference.channels.channel import Channel, Residual
+from hyperleg_design.gap.inference.channels.channel import Channel
+from hyperleg_design.gap.inference.channels.discrepancy_posterior import discrepancy_posterior
 from hyperleg_design.gap.inference.channels.likelihood import Likelihood
+from hyperleg_design.gap.inference.channels.residual import Residual
 from hyperleg_design.gap.inference.channels.scales import ABSENT, Scales
 from hyperleg_design.gap.inference.rules import InferenceRules
 
@@ -19,6 +21,20 @@ STEPS = (1.2, 0.5, 0.2)
 """Steps of the search for a scale's logarithm, each halved about [-]."""
 MOST_STEPS = 4
 """Of each of `STEPS`."""
+
+
+def first_scales(channel: Channel, rules: InferenceRules) -> Scales:
+    """Choose the scales from which a fit begins: noise that explains the whole residual.
+
+    Args:
+        channel: whose they are.
+        rules: of the inference.
+    """
+    square = np.bincount(channel.band, channel.whole_residual.square, len(channel.numbers))
+    weight, prior = rules.noise.weight, rules.discrepancy
+    noise = np.maximum((weight + square) / (weight + channel.numbers), 1.0)
+    standing = prior.referenced if channel.referenced else prior.standing
+    return Scales(noise, float(np.log(standing)), float(np.log(prior.change)))
 
 
 def fitted(
@@ -64,7 +80,7 @@ def _noise(
     is at some scales `(b,)`.
     """
     weight = rules.noise.weight
-    means, covariances = channel.discrepancy(scales, residual)
+    means, covariances = discrepancy_posterior(channel, scales, residual)
     square = residual.square.copy()
     for session, (mean, covariance) in enumerate(zip(means, covariances, strict=True)):
         own = channel.session == session

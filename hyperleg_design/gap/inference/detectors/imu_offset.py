@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hyperleg_design.gap.effects.sensors.imu_bias import IMU, USUAL, ImuBias
-from hyperleg_design.gap.inference.parameters import NORMAL
+from hyperleg_design.gap.inference.intervals import NORMAL
 from hyperleg_design.gap.inference.rules import CauseRules
 from hyperleg_design.gap.model.mechanism import quaternion_rotation
 from hyperleg_design.gap.results.diagnosis import Value

@@ -14,7 +14,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects.ground.ground_compliance import USUAL, GroundCompliance
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
-from hyperleg_design.gap.inference.parameters import NORMAL
+from hyperleg_design.gap.inference.intervals import NORMAL
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, Footing, footings
 from hyperleg_design.gap.signals.nominal_ground import Law

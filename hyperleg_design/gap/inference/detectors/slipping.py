@@ -17,7 +17,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects.ground.ground_friction import USUAL, GroundFriction
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
-from hyperleg_design.gap.inference.parameters import NORMAL
+from hyperleg_design.gap.inference.intervals import NORMAL
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, footings
 from hyperleg_design.gap.signals.signals import Signals

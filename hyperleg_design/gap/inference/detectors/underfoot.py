@@ -1,6 +1,4 @@
-"""What feet tell of their ground without any residual, foot by foot; see `slipping` and
-`sinking`.
-"""
+"""The result of `slipping` and `sinking`: a foot whose ground differs from the model's."""
 
 from __future__ import annotations
 
@@ -12,22 +10,22 @@ from hyperleg_design.gap.results.diagnosis import Value
 
 @dataclass(frozen=True, eq=False)
 class Underfoot:
-    """One foot on another ground than it should be."""
+    """One foot, and how its ground differs from the nominal one."""
 
     effect: str
     """Of the catalogue."""
     foot: str
     parameters: Mapping[str, Value]
     shape: str
-    """By which it is known."""
+    """Name of the finding: that the foot slides, or that it sinks."""
     says: str
     """For people."""
     weight: float
-    """Of this foot among others: seconds, or contacts."""
+    """Of this foot among others: seconds that it slides, or number of its contacts."""
     size: float
     """By how much the nominal ground is off, root mean square, in `unit`."""
     left: float
-    """Of it, with a ground taken from other data: other logs, or the other half of one."""
+    """The same with the ground that other data show: other logs, or the other half of one."""
     unit: str
 
     @property
@@ -37,5 +35,5 @@ class Underfoot:
 
     @property
     def closed(self) -> float:
-        """Share of the gap that is foretold."""
+        """Share of `size` that a ground estimated from other data explains."""
         return 1 - self.left / self.size

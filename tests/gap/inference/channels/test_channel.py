@@ -9,6 +9,7 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from hyperleg_design.gap.inference.channels.channel import Channel
+from hyperleg_design.gap.inference.channels.discrepancy_posterior import discrepancy_posterior
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.rules import InferenceRules
 
@@ -99,7 +100,7 @@ def test_reduced_products_are_those_in_the_metric_of_the_covariance(steady):
 @pytest.mark.parametrize("steady", [0, 1])
 def test_posterior_of_the_discrepancy_is_that_of_the_normal_equations(steady):
     channel, white = made(np.random.default_rng(8), steady=steady)
-    means, covariances = channel.discrepancy(SCALES)
+    means, covariances = discrepancy_posterior(channel, SCALES)
     k, sessions = channel.columns, len(channel.tested)
     change = channel.change_scales(SCALES) ** 2
     precision = np.zeros((k * (1 + sessions),) * 2)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.inference.channels.scale_fit import STEPS, fitted
+from hyperleg_design.gap.inference.channels.scale_fit import STEPS, first_scales, fitted
 from hyperleg_design.gap.inference.rules import InferenceRules
 from tests.gap.inference.channels.test_channel import made
 
@@ -17,7 +17,7 @@ RULES = InferenceRules()
 def test_fitting_scales_never_lowers_the_posterior():
     rng = np.random.default_rng(3)
     channel, _ = made(rng, count=120)
-    start = channel.start(RULES)
+    start = first_scales(channel, RULES)
     found = fitted(channel, start, RULES)
     assert channel.log_posterior(found, RULES) >= channel.log_posterior(start, RULES)
 
@@ -26,7 +26,7 @@ def test_noise_is_found_where_nothing_else_acts():
     rng = np.random.default_rng(21)
     channel, _ = made(rng, sessions=1, count=4000, k=2)
     quiet = replace(channel, products=channel.products * np.array([1.0, 9.0])[:, None, None])
-    found = fitted(quiet, quiet.start(RULES), RULES)
+    found = fitted(quiet, first_scales(quiet, RULES), RULES)
     np.testing.assert_allclose(found.noise, [1.0, 9.0], rtol=0.1)
 
 
@@ -44,13 +44,13 @@ def test_a_change_under_test_alone_is_unlisted_and_one_in_all_sessions_is_not():
         own = replace(
             channel, whitened=tuple(changed), products=np.array([o @ o.T for o in changed])
         )
-        found = fitted(own, own.start(RULES), RULES)
+        found = fitted(own, first_scales(own, RULES), RULES)
         assert (found.new > 0) is unlisted
 
 
 def test_no_small_step_of_a_fitted_scale_has_a_larger_posterior():
     channel, _ = made(np.random.default_rng(4), sessions=4, tested=1, count=60)
-    found = fitted(channel, channel.start(RULES), RULES, sweeps=40)
+    found = fitted(channel, first_scales(channel, RULES), RULES, sweeps=40)
     best = channel.log_posterior(found, RULES)
     for name in ("standing", "change"):
         for step in (-STEPS[-1], STEPS[-1]):
@@ -60,7 +60,7 @@ def test_no_small_step_of_a_fitted_scale_has_a_larger_posterior():
 
 def test_noise_of_references_ends_where_the_posterior_is_stationary():
     channel, _ = made(np.random.default_rng(6), sessions=4, count=30, k=8)
-    found = fitted(channel, channel.start(RULES), RULES, sweeps=40)
+    found = fitted(channel, first_scales(channel, RULES), RULES, sweeps=40)
     references = np.setdiff1d(channel.band, channel.bands_tested)
     assert len(references) == 2
 
@@ -82,7 +82,7 @@ def test_only_what_is_left_of_the_residual_counts():
     trace = 5.0 * rng.standard_normal(len(channel.samples))
     without = channel.without(trace)
     left = channel.left(*channel.crossed(trace[None]), np.ones(1))
-    start = channel.start(RULES)
+    start = first_scales(channel, RULES)
     beside, directly = fitted(channel, start, RULES, left), fitted(without, start, RULES)
     np.testing.assert_allclose(beside.noise, directly.noise, rtol=1e-8)
     assert not np.allclose(beside.noise, fitted(channel, start, RULES).noise, rtol=0.1)
@@ -92,7 +92,7 @@ def test_only_what_is_left_of_the_residual_counts():
 
 def test_a_single_session_tells_no_change():
     channel, _ = made(np.random.default_rng(10), sessions=1)
-    start = channel.start(RULES)
+    start = first_scales(channel, RULES)
     found = fitted(channel, start, RULES)
     assert found.change == start.change
     assert found.new == 0.0

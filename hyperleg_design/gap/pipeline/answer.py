@@ -1,4 +1,6 @@
-"""A diagnosis from the posterior of the hypotheses: verdict, gap, causes, rivals, remainder."""
+"""The answer: a `Diagnosis` (verdict, gap, causes, rivals, remainder) from the posterior of the
+hypotheses.
+"""
 
 from __future__ import annotations
 
@@ -14,17 +16,15 @@ from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.checks.coverage import beyond_references
 from hyperleg_design.gap.effects import UNLISTED, WEIGHED
 from hyperleg_design.gap.experiments import experiment
-from hyperleg_design.gap.inference.assembly import Evidence, evidence_of
-from hyperleg_design.gap.inference.crossed import predicted
-from hyperleg_design.gap.inference.detectable import detectable
-from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.inference.assembly import Evidence
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.gap_size import GapSize
 from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
-from hyperleg_design.gap.inference.parameters import intervals
-from hyperleg_design.gap.inference.posterior import Posterior, expanded, posterior_of
-from hyperleg_design.gap.inference.reference_differences import FEWEST, Difference, differences
+from hyperleg_design.gap.inference.intervals import intervals
+from hyperleg_design.gap.inference.posterior import Posterior, expanded
+from hyperleg_design.gap.inference.reference_differences import Difference
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.search import Result, Search
+from hyperleg_design.gap.inference.search import Result
 from hyperleg_design.gap.results.diagnosis import (
     LEAST_SHARE,
     MOST_RIVALS,
@@ -39,77 +39,15 @@ from hyperleg_design.gap.results.finding import NOTE, WARNING
 from hyperleg_design.gap.signals.signals import RESIDUALS, Signals
 
 WORST = -9.99
-"""Share closed that is told at least: far below 0, a number says nothing more."""
+"""Least share of a gap closed that is stated [-]; a cause that fits other data badly may close far
+less than nothing."""
 CLEAR = 2.0
-"""Standard deviations from its null from which a place of an effect at all places is named."""
+"""Standard deviations of a parameter from its null, from which an effect that acts at all of its
+places is named at one of them [-]."""
 
 
-def judge_signals(
-    signals: Sequence[Signals],
-    references: Sequence[Signals],
-    places: Sequence[tuple[str, str]],
-    rules: InferenceRules,
-    *,
-    seed: int = 0,
-    threads: int = 1,
-    checks: Sequence[Check] = (),
-    sensitivity: bool = True,
-) -> Diagnosis:
-    """Diagnose conditioned logs by the posterior of the hypotheses.
-
-    Args:
-        signals: of logs under test.
-        references: of logs of the healthy robot.
-        places: effects and locations that are tried.
-        rules: of the inference.
-        seed: of the bootstrap.
-        threads: that share the work; they change no result.
-        checks: of the logs, for remarks.
-        sensitivity: whether to say what these logs could have shown.
-
-    Returns:
-        The diagnosis.
-    """
-    search, result = _searched(signals, references, places, rules, threads)
-    apart: list[Difference] = []
-    while len(apart) < len(references) - 1 and (odd := differences(search, result)):
-        tried = [
-            (difference, *_searched(signals, mended, places, rules, threads))
-            for difference in (odd if len(references) == FEWEST else odd[:1])
-            for mended in [difference.taken_out(references)]
-        ]  # which of two is the odd one, they do not say: the one without which less has changed
-        difference, search, result = min(tried, key=lambda entry: _gain(*entry[1:]))
-        references = search.evidence.references
-        apart.append(difference)
-    evidence = search.evidence
-    held = predicted(evidence, result.best, rules)
-    size = GapSize.of(evidence, result.best, held, rules)
-    answer = _Answer(
-        evidence, result, posterior_of(result, evidence, size, rules), size, rules, seed, apart
-    )
-    return answer.diagnosis(
-        checks, tuple(one.mapping() for one in detectable(search)) if sensitivity else ()
-    )
-
-
-def _searched(
-    signals: Sequence[Signals],
-    references: Sequence[Signals],
-    places: Sequence[tuple[str, str]],
-    rules: InferenceRules,
-    threads: int,
-) -> tuple[Search, Result]:
-    search = Search(evidence_of(signals, references, rules), rules, places, threads)
-    return search, search.result()
-
-
-def _gain(search: Search, result: Result) -> float:
-    """What the causes gain over none [nat]."""
-    return result.best.score - search.fits.nothing.score
-
-
-class _Answer:
-    """What the file tells of a posterior."""
+class Answer:
+    """Collects the parts of a `Diagnosis` from the posterior and the size of the gap."""
 
     def __init__(
         self,
@@ -134,9 +72,9 @@ class _Answer:
         Returns:
             The diagnosis.
         """
-        told = self.posterior
-        naming = told.verdict in NAMING
-        causes = self.causes(told.order)
+        posterior = self.posterior
+        naming = posterior.verdict in NAMING
+        causes = self.causes(posterior.order)
         rivals = self.rivals()
         if not naming:
             rivals, causes = (*causes, *rivals), ()
@@ -145,14 +83,18 @@ class _Answer:
                 share = (1 - self.rules.posterior.likely) / most
                 rivals = tuple(_scaled(one, share) for one in rivals)
         equivalent = tuple(
-            tuple(name[:2] for name in (told.hypothesis.candidates[place].name, *group))
-            for place, group in zip(told.order, told.alike, strict=True)
+            tuple(name[:2] for name in (posterior.hypothesis.candidates[place].name, *group))
+            for place, group in zip(posterior.order, posterior.alike, strict=True)
             if group and naming
         )
         trial = experiment.separating(equivalent[0]) if equivalent else None
-        left = told.remainder if told.remainder >= self.rules.posterior.remainder else None
+        left = (
+            posterior.remainder if posterior.remainder >= self.rules.posterior.remainder else None
+        )
         return Diagnosis(
-            verdict="unknown" if told.verdict == "none" and self.cycling else told.verdict,
+            verdict="unknown"
+            if posterior.verdict == "none" and self.cycling
+            else posterior.verdict,
             gap=self.gap(naming),
             where=self.where(),
             causes=causes,
@@ -196,18 +138,30 @@ class _Answer:
         return tuple(stated)
 
     def causes(self, places: Sequence[int]) -> tuple[Named, ...]:
-        """Some candidates of the most probable hypothesis, in their order."""
-        told = self.posterior
-        found: list[Named] = []
+        """Collect some candidates of the most probable hypothesis, in their order.
+
+        Args:
+            places: indices of the candidates.
+        """
+        posterior = self.posterior
+        collected: list[Named] = []
         for place in places:
-            found += self.named(told.hypothesis, told.hypothesis.candidates[place])
-        return tuple(found)
+            collected += self.named(posterior.hypothesis, posterior.hypothesis.candidates[place])
+        return tuple(collected)
 
     def named(self, hypothesis: Hypothesis, candidate: Candidate) -> list[Named]:
-        """A candidate's causes with parameters: one, or one a place where it acts."""
+        """Name a candidate with its parameters.
+
+        Args:
+            hypothesis: the hypothesis.
+            candidate: one of its candidates.
+
+        Returns:
+            One cause; of an effect at all of its places, one for each place where it clearly acts.
+        """
         probability = self.posterior.probability[candidate.name]
         subject = self.evidence.signals[0].subject
-        found: list[tuple[float, Named]] = []
+        sized: list[tuple[float, Named]] = []
         for place, own in expanded(hypothesis.candidates):
             if own is not candidate:
                 continue
@@ -218,9 +172,9 @@ class _Answer:
             stands = float(np.max(np.where(cause.shape, 0.0, clear)))
             closed = self.closed_by(hypothesis, place)
             sizes = intervals(cause, values, deviation, subject, self.torque_error)
-            found.append((stands, Named(cause.effect, cause.location, probability, closed, sizes)))
-        clear_ones = [named for stands, named in found if stands >= CLEAR]
-        return clear_ones or [max(found, key=lambda one: one[0])[1]]
+            sized.append((stands, Named(cause.effect, cause.location, probability, closed, sizes)))
+        clear_ones = [named for stands, named in sized if stands >= CLEAR]
+        return clear_ones or [max(sized, key=lambda one: one[0])[1]]
 
     @property
     def torque_error(self) -> float:
@@ -229,8 +183,15 @@ class _Answer:
         return self.rules.posterior.torque_error if steered else 0.0
 
     def closed_by(self, hypothesis: Hypothesis, place: int) -> float:
-        """Share of the gap that one cause closes; of a standing one, of the gap that is left where
-        it is taken away alone.
+        """Compute the share of the gap that one cause closes.
+
+        Args:
+            hypothesis: the hypothesis.
+            place: index of the cause among its causes.
+
+        Returns:
+            The share; of a cause that acts in the references, too, of the gap that is left where
+            this cause alone is taken away; 0 of another hypothesis than the most probable one.
         """
         if hypothesis is not self.posterior.hypothesis or not self.posterior.hypothesis.causes:
             return 0.0
@@ -246,20 +207,33 @@ class _Answer:
         """
         best: dict[tuple[str, str], Named] = {}
         for hypothesis, candidate in self.posterior.rivals[:MOST_RIVALS]:
-            rivals = (one for one in self.named(hypothesis, candidate) if not self.told(one))
+            rivals = (
+                named for named in self.named(hypothesis, candidate) if not self.is_cause(named)
+            )
             if (rival := next(rivals, None)) is not None:
                 place = rival.effect, rival.location
                 best[place] = max(best.get(place, rival), rival, key=lambda one: one.probability)
         ranked = sorted(best.items(), key=lambda entry: (-entry[1].probability, *entry[0]))
         return tuple(rival for _, rival in ranked)
 
-    def told(self, one: Named) -> bool:
-        """Whether a rival is a cause of the most probable hypothesis itself."""
+    def is_cause(self, rival: Named) -> bool:
+        """Tell whether a rival is a cause of the most probable hypothesis itself.
+
+        Args:
+            rival: the rival.
+        """
         acting = (cause for cause in self.posterior.hypothesis.causes if not cause.standing)
-        return (one.effect, one.location) in {(cause.effect, cause.location) for cause in acting}
+        return (rival.effect, rival.location) in {
+            (cause.effect, cause.location) for cause in acting
+        }
 
     def gap(self, naming: bool) -> Shrinkage:
-        """Before, after and floor over the channels that count, in their unit."""
+        """Compute the gap before and after, and the least possible one, over the channels that
+        count.
+
+        Args:
+            naming: whether the verdict names causes.
+        """
         size = self.size
         before, after = (float(np.sqrt(size.total(square))) for square in (size.before, size.after))
         closed, low, high = 0.0, 0.0, 0.0
@@ -308,26 +282,26 @@ class _Answer:
     def cycling(self) -> dict[str, float]:
         """Joints in a limit cycle that reference logs lack, and its frequency [Hz]."""
         before = {joint for one in self.evidence.references for joint in _cycles(one)}
-        found: dict[str, float] = {}
+        frequencies: dict[str, float] = {}
         for one in self.evidence.signals:
-            found |= {joint: f for joint, f in _cycles(one).items() if joint not in before}
-        return found
+            frequencies |= {joint: f for joint, f in _cycles(one).items() if joint not in before}
+        return frequencies
 
     def shape(self) -> tuple[dict[str, Any], ...]:
         """Channels in which something unlisted acts."""
         left = np.maximum(self.size.after - self.size.noise, 0.0)
-        found = []
+        shapes = []
         for joint, frequency in self.cycling.items():
             text = (
                 f"swings to and fro at {frequency:.0f} Hz (or a frequency that the log's rate "
                 f"folds there), which nothing commands: its control loop is on the edge of "
                 f"stability"
             )
-            found.append(residual_shape("limit cycle", joint, text, 0.0))
+            shapes.append(residual_shape("limit cycle", joint, text, 0.0))
         remainder = self.posterior.remainder
         for cause, text in self.odd():
             if not cause.standing:
-                found.append(residual_shape(cause.effect, cause.location, text, remainder))
+                shapes.append(residual_shape(cause.effect, cause.location, text, remainder))
         for place in np.argsort(-left, kind="stable").tolist()[:3]:
             if left[place] <= 0 or self.posterior.remainder <= 0:
                 continue
@@ -337,32 +311,36 @@ class _Answer:
                 f"than a healthy robot's, and no listed effect says why"
             )
             share = float(left[place] / max(left.sum(), 1e-300))
-            found.append(residual_shape("unlisted", one.name, text, share))
-        return tuple(found)
+            shapes.append(residual_shape("unlisted", one.name, text, share))
+        return tuple(shapes)
 
     def remarks(self, checks: Sequence[Check]) -> tuple[str, ...]:
-        """Remarks on the logs."""
-        found = []
+        """Collect what a reader of the answer should know of the logs.
+
+        Args:
+            checks: of the logs.
+        """
+        texts = []
         for check in checks:
-            found += [
+            texts += [
                 f"{check.name}: {f.severity}: {f.signal + ' ' if f.signal else ''}{f.what}"
                 for f in check.findings
                 if f.severity in (WARNING, NOTE)
             ]
         for s in (*self.evidence.signals, *self.evidence.references):
-            found += [f"{s.log.name}: {note}" for note in s.notes]
-        found += beyond_references(self.evidence.signals, self.evidence.references)
-        found.extend(
+            texts += [f"{s.log.name}: {note}" for note in s.notes]
+        texts += beyond_references(self.evidence.signals, self.evidence.references)
+        texts.extend(
             f"references and tests alike: {cause.location} {description}"
             for cause, description in self.odd()
             if cause.standing
         )
         if not self.evidence.references:
-            found.append(
+            texts.append(
                 "no reference logs: what the model leaves is judged by how well robots are known "
                 "usually"
             )
-        return tuple(dict.fromkeys(found))
+        return tuple(dict.fromkeys(texts))
 
     def provenance(self) -> dict[str, Any]:
         """What made it, of which logs."""

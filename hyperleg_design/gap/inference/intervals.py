@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.diagnosis import Value
 

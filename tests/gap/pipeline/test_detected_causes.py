@@ -8,7 +8,7 @@ from diagnosed import run
 
 from hyperleg_design.gap.inference.detectors.imu_offset import PLACE, Offset
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
-from hyperleg_design.gap.pipeline.beside_balances import of_feet, of_imu
+from hyperleg_design.gap.pipeline.detected_causes import of_feet, of_imu
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.results.diagnosis import Named, Place, Value
 from hyperleg_design.report.gap.text import diagnosis_text

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.composed import after, carrying
+from hyperleg_design.gap.inference.interactions import after, carrying
 from hyperleg_design.gap.inference.screen import linearise
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.signals.conditioning import condition

@@ -9,6 +9,7 @@ import numpy as np
 from hyperleg_design.gap.effects import UNLISTED
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.channel import Channel
+from hyperleg_design.gap.inference.channels.discrepancy_posterior import discrepancy_posterior
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.hypothesis import Hypothesis, Stack, reduced, shifted, solve
 from hyperleg_design.gap.inference.rules import InferenceRules
@@ -69,7 +70,7 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
                     sum_of = odd if cause.effect in UNLISTED else own
                     sum_of += cause.trace(found.theta[piece]) * weight
         for whole, some, scales in zip(evidence.channels, channels, hypothesis.scales, strict=True):
-            means, _ = some.without(left * kept).discrepancy(scales)
+            means, _ = discrepancy_posterior(some.without(left * kept), scales)
             healthy = healthy_share(whole, scales, rules)
             for cell, (place, white) in enumerate(zip(whole.places, whole.whitened, strict=True)):
                 mine = (fold[place] == held) & tested[place]
@@ -85,8 +86,18 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
 
 
 def healthy_share(channel: Channel, scales: Scales, rules: InferenceRules) -> float:
-    """Share of a channel's discrepancy that a healthy robot's would be, by its prior, from 0 to 1:
-    all of it, up to one deviation of the prior above its median.
+    """Compute the share of a channel's discrepancy that a healthy robot would have, too.
+
+    Without references a discrepancy up to one deviation of its prior above the median is healthy;
+    with references, all of it but its growth under test.
+
+    Args:
+        channel: of the evidence.
+        scales: fitted hyperparameters.
+        rules: of the inference.
+
+    Returns:
+        The share, from 0 to 1.
     """
     prior = rules.discrepancy
     if channel.referenced:

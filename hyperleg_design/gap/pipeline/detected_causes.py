@@ -1,5 +1,5 @@
-"""Causes that no residual shows, put into a diagnosis: sensors that differ from others, feet that
-slide or sink.
+"""Add causes that no residual shows to a diagnosis: a constant error of the IMU, feet that slide or
+sink.
 """
 
 from __future__ import annotations
@@ -22,16 +22,17 @@ from hyperleg_design.gap.results.diagnosis import (
 )
 
 APART = (OFFSET, SLIPS, SINKS)
-"""Shapes by which such causes are known."""
+"""Names of these findings in `Diagnosis.residual_shape`."""
 OTHER_SENSOR = 0.05
 """Probability that what differs from an IMU is wrong instead of it (assumed)."""
 OTHER_GROUND = 0.05
 """Probability that forces or heights of feet are wrong instead of their ground (assumed)."""
 OF_FEET = 0.5
-"""Share of an unknown gap in the ground under feet that tell of it, from which it is theirs."""
+"""Share of an unknown gap that lies in the residuals of sliding or sinking feet, from which their
+ground explains it [-]."""
 
 
-def of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:
+def of_imu(diagnosis: Diagnosis, offset: Offset) -> Diagnosis:
     """Add an IMU's constant error to a diagnosis: beside what is named already, or instead of
     nothing; of an unknown gap it is a part.
 
@@ -40,72 +41,76 @@ def of_imu(told: Diagnosis, offset: Offset) -> Diagnosis:
     an unknown gap.
 
     Args:
-        told: the diagnosis so far.
+        diagnosis: the diagnosis so far.
         offset: error of the IMU.
 
     Returns:
         The diagnosis with it.
     """
-    if any((c.effect, c.location) == PLACE for c in told.causes):
+    if any((c.effect, c.location) == PLACE for c in diagnosis.causes):
         causes = tuple(
-            _surer(c, offset) if (c.effect, c.location) == PLACE else c for c in told.causes
+            _surer(c, offset) if (c.effect, c.location) == PLACE else c for c in diagnosis.causes
         )
-        return told if causes == told.causes else replace(told, causes=causes)
+        return diagnosis if causes == diagnosis.causes else replace(diagnosis, causes=causes)
     shape = residual_shape(OFFSET, PLACE[1], offset.says, offset.closed)
-    rivals = tuple(r for r in told.rivals if (r.effect, r.location) != PLACE)
-    told = replace(told, residual_shape=(shape, *told.residual_shape), rivals=rivals)
+    rivals = tuple(r for r in diagnosis.rivals if (r.effect, r.location) != PLACE)
+    diagnosis = replace(diagnosis, residual_shape=(shape, *diagnosis.residual_shape), rivals=rivals)
     cause = Named(*PLACE, 1 - OTHER_SENSOR, offset.closed, offset.parameters)
-    if told.causes:
-        return told if offset.leans else replace(told, causes=(*told.causes, cause))
-    if told.verdict == "unknown" or offset.leans:
-        return replace(_with_part(told, cause), verdict="unknown")
+    if diagnosis.causes:
+        return diagnosis if offset.leans else replace(diagnosis, causes=(*diagnosis.causes, cause))
+    if diagnosis.verdict == "unknown" or offset.leans:
+        return replace(_with_part(diagnosis, cause), verdict="unknown")
     gap = Shrinkage(
         offset.size, offset.left, 0.0, offset.closed, (offset.closed, offset.closed), offset.unit
     )
-    return _instead(told, (cause,), gap, (Place(PLACE[1], "sensor", "all", 1.0),))
+    return _instead(diagnosis, (cause,), gap, (Place(PLACE[1], "sensor", "all", 1.0),))
 
 
 def _surer(cause: Named, offset: Offset) -> Named:
-    """An IMU's errors as residuals tell them, or as other sensors do, whichever is surer; what no
-    other sensor tells has no interval.
+    """Replace values of an IMU's errors by those from other sensors where these have narrower
+    intervals; a value that no other sensor shows has an interval of length zero there.
     """
-    told = {
+    narrower = {
         n: p
         for n, p in offset.parameters.items()
         if 0 < p.high - p.low < cause.parameters[n].high - cause.parameters[n].low
     }
-    return replace(cause, parameters={**cause.parameters, **told})
+    return replace(cause, parameters={**cause.parameters, **narrower})
 
 
-def of_feet(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
+def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
     """Add what feet show of their ground to a diagnosis: beside what is named already, or instead
     of nothing.
 
     An unknown gap is explained by the feet where it lies under them, else they are a part of it.
 
     Args:
-        told: the diagnosis so far.
+        diagnosis: the diagnosis so far.
         feet: effects of the ground under some feet.
 
     Returns:
         The diagnosis with them.
     """
-    told = _without_creep(told, feet)
-    feet = [one for one in feet if one.name not in {(c.effect, c.location) for c in told.causes}]
+    diagnosis = _without_creep(diagnosis, feet)
+    feet = [
+        one for one in feet if one.name not in {(c.effect, c.location) for c in diagnosis.causes}
+    ]
     if not feet:
-        return told
+        return diagnosis
     noted = (residual_shape(one.shape, one.foot, one.says, one.closed) for one in feet)
     effects = {one.effect for one in feet}
-    rivals = tuple(r for r in told.rivals if r.effect not in effects)
-    told = replace(told, residual_shape=(*noted, *told.residual_shape), rivals=rivals)
+    rivals = tuple(r for r in diagnosis.rivals if r.effect not in effects)
+    diagnosis = replace(
+        diagnosis, residual_shape=(*noted, *diagnosis.residual_shape), rivals=rivals
+    )
     causes = tuple(Named(*one.name, 1 - OTHER_GROUND, one.closed, one.parameters) for one in feet)
-    if told.causes:
-        return replace(told, causes=(*told.causes, *causes))
+    if diagnosis.causes:
+        return replace(diagnosis, causes=(*diagnosis.causes, *causes))
     names = {one.foot for one in feet}
-    under = (w for w in told.where if w.regime == "all" and w.kind == "foot")
+    under = (w for w in diagnosis.where if w.regime == "all" and w.kind == "foot")
     theirs = sum(w.share for w in under if w.location in names)
-    if told.verdict == "unknown" and theirs < OF_FEET:
-        return _with_part(told, causes[0])
+    if diagnosis.verdict == "unknown" and theirs < OF_FEET:
+        return _with_part(diagnosis, causes[0])
     weight = sum(one.weight for one in feet)
     before = sum(one.weight * one.size**2 for one in feet) / weight
     after = sum(one.weight * one.left**2 for one in feet) / weight
@@ -113,41 +118,43 @@ def of_feet(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
     gap = Shrinkage(before**0.5, after**0.5, 0.0, closed, (closed, closed), feet[0].unit)
     shares = (one.weight * one.size**2 / (before * weight) for one in feet)
     where = (Place(o.foot, "foot", "all", share) for o, share in zip(feet, shares, strict=True))
-    return _instead(told, causes, gap, tuple(where))
+    return _instead(diagnosis, causes, gap, tuple(where))
 
 
-def _with_part(told: Diagnosis, cause: Named) -> Diagnosis:
+def _with_part(diagnosis: Diagnosis, cause: Named) -> Diagnosis:
     """An unknown gap, of which a cause may be a part."""
-    beside = sum(r.probability for r in told.rivals)
+    beside = sum(r.probability for r in diagnosis.rivals)
     part = replace(cause, probability=max(1 - beside, 0.0) / 2)
-    return replace(told, rivals=(part, *told.rivals)[:MOST_RIVALS])
+    return replace(diagnosis, rivals=(part, *diagnosis.rivals)[:MOST_RIVALS])
 
 
 def _instead(
-    told: Diagnosis, causes: tuple[Named, ...], gap: Shrinkage, where: tuple[Place, ...]
+    diagnosis: Diagnosis, causes: tuple[Named, ...], gap: Shrinkage, where: tuple[Place, ...]
 ) -> Diagnosis:
     """Causes alone, with a gap of their own; what was a rival shares what is left of the first
     one's probability.
     """
-    beside, otherwise = sum(r.probability for r in told.rivals), 1 - causes[0].probability
+    beside, otherwise = sum(r.probability for r in diagnosis.rivals), 1 - causes[0].probability
     rivals = tuple(
         replace(r, probability=r.probability * otherwise / max(beside, 1.0), closed=0.0)
-        for r in told.rivals
+        for r in diagnosis.rivals
     )
-    return replace(told, verdict="explained", gap=gap, where=where, causes=causes, rivals=rivals)
+    return replace(
+        diagnosis, verdict="explained", gap=gap, where=where, causes=causes, rivals=rivals
+    )
 
 
-def _without_creep(told: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
+def _without_creep(diagnosis: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
     """Without slippery ground under feet that sink and are not known to slide: what is soft
     creeps.
     """
-    slid = {one["location"] for one in told.residual_shape if one["shape"] == SLIPS}
+    slid = {one["location"] for one in diagnosis.residual_shape if one["shape"] == SLIPS}
     soft = {(SLIPPERY, one.foot) for one in feet if one.shape == SINKS and one.foot not in slid}
-    kept = tuple(c for c in told.causes if (c.effect, c.location) not in soft)
-    if len(kept) == len(told.causes):
-        return told
-    sets = tuple(group for group in told.equivalent if not soft.intersection(group))
-    verdict = "explained" if told.verdict == "ambiguous" and not sets else told.verdict
-    experiment = told.separating_experiment if sets else None
-    told = replace(told, verdict=verdict, causes=kept, equivalent=sets)
-    return replace(told, separating_experiment=experiment)
+    kept = tuple(c for c in diagnosis.causes if (c.effect, c.location) not in soft)
+    if len(kept) == len(diagnosis.causes):
+        return diagnosis
+    sets = tuple(group for group in diagnosis.equivalent if not soft.intersection(group))
+    verdict = "explained" if diagnosis.verdict == "ambiguous" and not sets else diagnosis.verdict
+    experiment = diagnosis.separating_experiment if sets else None
+    diagnosis = replace(diagnosis, verdict=verdict, causes=kept, equivalent=sets)
+    return replace(diagnosis, separating_experiment=experiment)

@@ -1,10 +1,11 @@
-"""Causes that act on what others leave: logs as these leave them.
+"""Causes whose traces depend on other causes: logs with the commands and torques that the others
+leave.
 
-A cause that is new in the logs under test acts on the robot as it was before. If its drives lag, a
-further delay shifts what they gave, not what they were asked for; a motor that gave 0.85 of what is
-believed, and now gives 0.75 of that, has lost another 0.85 x 0.25. And gears rub by all that they
-carry: with a load on the hand they rub more. Traces add up, so that of such a cause is computed
-from torques that hold the others already.
+A cause that is new in the logs under test acts on the robot as it was before. If the drives lag
+already, a further delay shifts what they gave, not what they were asked for; a motor that gave 0.85
+of what is believed, and now gives 0.75 of that, has lost another 0.85 x 0.25. Friction under load
+grows with all that a joint carries, a load on the hand included. The traces of a hypothesis are
+summed, so the trace of such a cause is computed from torques that contain the others already.
 """
 
 from __future__ import annotations
@@ -15,31 +16,35 @@ from dataclasses import replace
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.fit import Cause
+from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.signals.filtering import FilteredLog
 
 
 def after(samples: Samples, causes: Sequence[tuple[Cause, np.ndarray]]) -> Samples:
-    """Samples whose logs hold commands and torques of motors as some causes leave them; their
-    residuals stay what they are.
+    """Replace commands and motor torques of logs by those that some causes leave.
 
     Args:
         samples: of logs.
         causes: that act in drives, and their values `(k,)` each.
+
+    Returns:
+        The samples; their residuals are unchanged.
     """
     logs = tuple(_after(log, causes) for log in samples.filtered_logs)
     return replace(samples, filtered_logs=logs)
 
 
 def carrying(samples: Samples, causes: Sequence[tuple[Cause, np.ndarray]], tests: int) -> Samples:
-    """Samples whose logs need the torques that some masses ask for; their residuals stay what they
-    are.
+    """Add the torques that some masses need to the needed torques of logs.
 
     Args:
         samples: of logs, those under test first.
         causes: masses, and their values `(k,)` each.
-        tests: number of logs under test; the others hold only what acts in all.
+        tests: number of logs under test; the others contain only causes that act in all logs.
+
+    Returns:
+        The samples; their residuals are unchanged.
     """
     logs = []
     for place, log in enumerate(samples.filtered_logs):

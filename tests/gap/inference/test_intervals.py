@@ -5,8 +5,8 @@ import pytest
 from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.fit import Cause
-from hyperleg_design.gap.inference.parameters import NORMAL, intervals
+from hyperleg_design.gap.inference.cause import Cause
+from hyperleg_design.gap.inference.intervals import NORMAL, intervals
 
 SUBJECT = SimpleNamespace(joints=("swing",), default=np.zeros(1))
 

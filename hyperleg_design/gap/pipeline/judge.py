@@ -1,0 +1,82 @@
+"""Judge conditioned logs: search for hypotheses, compare the references with one another, and make
+the answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hyperleg_design.gap.checks.check import Check
+from hyperleg_design.gap.inference.assembly import evidence_of
+from hyperleg_design.gap.inference.cross_validation import predicted
+from hyperleg_design.gap.inference.detectable import detectable
+from hyperleg_design.gap.inference.gap_size import GapSize
+from hyperleg_design.gap.inference.posterior import posterior_of
+from hyperleg_design.gap.inference.reference_differences import FEWEST, Difference, differences
+from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.search import Result, Search
+from hyperleg_design.gap.pipeline.answer import Answer
+from hyperleg_design.gap.results.diagnosis import Diagnosis
+from hyperleg_design.gap.signals.signals import Signals
+
+
+def judge_signals(
+    signals: Sequence[Signals],
+    references: Sequence[Signals],
+    places: Sequence[tuple[str, str]],
+    rules: InferenceRules,
+    *,
+    seed: int = 0,
+    threads: int = 1,
+    checks: Sequence[Check] = (),
+) -> Diagnosis:
+    """Diagnose conditioned logs by the posterior of the hypotheses.
+
+    Args:
+        signals: of logs under test.
+        references: of logs of the healthy robot.
+        places: effects and locations that are tried.
+        rules: of the inference.
+        seed: of the bootstrap.
+        threads: that share the work; they change no result.
+        checks: of the logs, for remarks.
+
+    Returns:
+        The diagnosis.
+    """
+    search, result = _searched(signals, references, places, rules, threads)
+    apart: list[Difference] = []
+    while len(apart) < len(references) - 1 and (odd := differences(search, result)):
+        # of two references that differ, either may be wrong: try both, and take the one without
+        # which the causes under test gain less
+        tried = [
+            (difference, *_searched(signals, mended, places, rules, threads))
+            for difference in (odd if len(references) == FEWEST else odd[:1])
+            for mended in [difference.taken_out(references)]
+        ]
+        difference, search, result = min(tried, key=lambda entry: _gain(*entry[1:]))
+        references = search.evidence.references
+        apart.append(difference)
+    evidence = search.evidence
+    held = predicted(evidence, result.best, rules)
+    size = GapSize.of(evidence, result.best, held, rules)
+    answer = Answer(
+        evidence, result, posterior_of(result, evidence, size, rules), size, rules, seed, apart
+    )
+    return answer.diagnosis(checks, tuple(one.mapping() for one in detectable(search)))
+
+
+def _searched(
+    signals: Sequence[Signals],
+    references: Sequence[Signals],
+    places: Sequence[tuple[str, str]],
+    rules: InferenceRules,
+    threads: int,
+) -> tuple[Search, Result]:
+    search = Search(evidence_of(signals, references, rules), rules, places, threads)
+    return search, search.result()
+
+
+def _gain(search: Search, result: Result) -> float:
+    """What the causes gain over none [nat]."""
+    return result.best.score - search.fits.nothing.score
