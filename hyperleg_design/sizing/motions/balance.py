@@ -100,23 +100,9 @@ class Series:
         Returns:
             The function of zero mean whose acceleration is `values` minus their mean, `(n, ...)`.
         """
-        return self._over(values, 2)
-
-    def integrated(self, values: np.ndarray) -> np.ndarray:
-        """Integrate values over time.
-
-        Args:
-            values: over time, `(n, ...)`.
-
-        Returns:
-            The function of zero mean whose rate is `values` minus their mean, `(n, ...)`.
-        """
-        return self._over(values, 1)
-
-    def _over(self, values: np.ndarray, times: int) -> np.ndarray:
         spectrum, frequency = self._spectrum(values)
         integral = np.zeros_like(spectrum)
-        integral[1:] = spectrum[1:] / (1j * frequency[1:]) ** times
+        integral[1:] = spectrum[1:] / (1j * frequency[1:]) ** 2
         return self._back(integral, values)
 
     def _back(self, spectrum: np.ndarray, values: np.ndarray) -> np.ndarray:
