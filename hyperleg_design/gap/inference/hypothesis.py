@@ -1,4 +1,6 @@
-"""Hypotheses: sets of causes, their fit beside the discrepancy, and their evidence."""
+"""Hypotheses: sets of causes, and the fit of their sizes at fixed scales of noise and
+discrepancy.
+"""
 
 from __future__ import annotations
 
@@ -24,11 +26,11 @@ Name = tuple[str, str, bool]
 EVERYWHERE = "*"
 """Location of an effect that acts at all of its places."""
 FREE = 1e3
-"""Prior deviation from which large sizes are looked for, in usual sizes."""
+"""Prior deviation with which a fit begins that is to find large sizes, in usual sizes [-]."""
 ALIKE = 1e-12
 """Share of its own square by which a column differs from all others, at least [-]."""
 ROUNDS = 3
-"""Of widening the priors of large fits."""
+"""Fits in turn with priors that are widened to the sizes of the fit before."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +190,7 @@ def reduced(evidence: Evidence, scales: Sequence[Scales], columns: np.ndarray) -
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Causes at the maximum of their posterior, at fixed scales."""
+    """Causes at the maximum of their posterior, at fixed scales of noise and discrepancy."""
 
     theta: np.ndarray
     covariance: np.ndarray
@@ -207,7 +209,11 @@ def solve(
     factors: Sequence[tuple[int, Factor | Shrinking]] = (),
     near: np.ndarray | None = None,
 ) -> Solution:
-    """Posterior of causes by Laplace's method, exact where all are linear and within bounds.
+    """Compute the posterior of causes by Laplace's method, which is exact where all are linear and
+    within bounds.
+
+    The prior of a size is normal with the width `rules.cause.width`; where the fit lies beyond
+    that, the width follows the fit, and `occam` charges for it.
 
     Args:
         products: as of `reduced`.
@@ -280,9 +286,9 @@ def _beyond(
     high: np.ndarray,
     shape: np.ndarray,
 ) -> float:
-    """What Laplace's method takes too much where sizes would rather lie beyond their bounds [nat]:
-    log of the integral of exp(-z t - t^2 / 2) over t > 0, over that over all t of exp(-t^2 / 2),
-    where z is the slope at the bound in standard deviations.
+    """Correct Laplace's method for sizes at their bounds, where the posterior falls off to one side
+    [nat]: log of the integral of exp(-z t - t^2 / 2) over t > 0, over the integral of exp(-t^2 / 2)
+    over all t, with the slope z at the bound in standard deviations.
     """
     slope = target - precision @ theta
     held = ~shape & (low < high)

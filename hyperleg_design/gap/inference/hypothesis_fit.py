@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 CLOSE = 0.02
-"""Step of a nonlinear fit, over usual sizes, from which it has converged [-]."""
+"""Step of a nonlinear fit, over usual sizes, below which it has converged [-]."""
 EASED = 2.0
 """Noise under test over a healthy robot's, in variance, and discrepancy, at most where causes are
 looked for [-]."""
@@ -149,8 +149,8 @@ class HypothesisFit:
         return solution.gain - solution.occam + paid
 
     def settled(self, hypothesis: Hypothesis) -> Hypothesis:
-        """A hypothesis whose causes are linearised at their own estimates, and new ones beside the
-        standing ones that act before them.
+        """Linearise the causes of a hypothesis again at their estimates, and beside the causes that
+        change what they act on (`interactions`), until both agree.
 
         Args:
             hypothesis: fitted to causes that are linearised elsewhere.
@@ -225,7 +225,7 @@ class HypothesisFit:
         scales: Sequence[Scales],
         near: np.ndarray | None = None,
     ) -> Solution:
-        """Causes at fixed scales; the gain is over no cause at these.
+        """Fit causes at fixed scales; the gain is over no cause at the same scales.
 
         Args:
             stack: columns of the causes.

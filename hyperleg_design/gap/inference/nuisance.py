@@ -1,9 +1,10 @@
-"""The usual small nuisance parameters, which are no causes: priors of each, fitted anew for every
-recording session.
+"""Nuisance parameters: small errors that every robot and every log has, which are no causes. They
+are fitted in every recording session, each with a normal prior.
 
-Most are parameters of effects of the catalogue at one place, so that their traces and widths are
-the effects' own; the rest are listed here. Widths are assumed, of the order that data sheets and
-drawings are wrong by.
+Most are parameters of effects of the catalogue at one place, with traces and widths of the effects
+themselves. The others are listed here: their names, and the standard deviations of their priors,
+all assumed, of the order of the errors of data sheets and drawings. `nuisance_traces` has their
+traces.
 """
 
 from __future__ import annotations
@@ -19,43 +20,44 @@ from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.gap.model.subject import Subject
 
 FORCES_SCALED, OF_FORCES = "contact_scale", 0.01
-"""Share by which the forces under a foot are told too large or too small (assumed: load cells in
-feet)."""
+"""Relative error of the force sensors under a foot, and its deviation [-]."""
 TURNOVER, SWUNG = "friction_turnover", "friction_in_chatter"
-"""Friction of models turns over with speed, as tanh(v / v_s); that of robots at once, or over a way
-on which bristles bend. By how much of these differences, nobody knows: no effect of the catalogue,
-and no nuisance parameter that is small."""
+"""Errors of the friction model where a joint reverses. The model's friction follows the speed as
+tanh(v / v_s). That of a robot reverses at once, or over the way on which bristles bend, and in a
+limit cycle its mean depends on the amplitude. How much of each difference a robot has is
+unknown."""
+WAYS = (0.0015, 0.006)
+"""Half of the ways over which friction reverses [rad]."""
+AT_ONCE, OF_WAY = 1.0, 0.3
+"""Deviation of the share of the model's friction that reverses at once, and over each way [-]."""
+SWINGS, OF_SWING = (0.5, 2.0), 0.7
+"""Amplitudes of a limit cycle over the one that the log shows, at which the model's friction is
+computed, and the deviation of the share of each difference [-]."""
 GEARED, TOLD_LATE, GIVING = "speed_ratio", "speed_told_late", "stiff_belt"
-"""Of motors whose speed is logged beside that of their joints, which shows what no other residual
-does: a share of it, the time between both sensors' samples, and belts and gears as stiff as they
-are, which give a little."""
+"""Errors between the logged speed of a motor and that of its joints: of the ratio, of the time
+between the samples of both sensors, and the compliance of a belt or gear that counts as stiff."""
 SPEEDS = (GEARED, TOLD_LATE, GIVING)
 OF_SPEED = 0.003
-"""Of the joints' speed: cords run on their own thickness, linkages off their drawing (assumed)."""
+"""Deviation of the ratio [-]: cords run on their own thickness, linkages differ from their
+drawing."""
 STIFF, GIVES = 60.0, 0.001
-"""Frequency of a rotor on a belt that nobody calls soft [Hz], and angle at a joint by which one
-gives under all of its torque [rad]; the softer of both is usual."""
+"""Resonance of a rotor on a stiff belt [Hz], and angle at the joint by which a stiff gear yields
+under its largest torque [rad]; the larger compliance of both is the deviation."""
 SOLE, SOLE_GIVES = "sole_height", "sole_gives"
-"""Where under a pad the ground's force acts, as soles wear, and give under load."""
-FORCES_LATE, TORQUES_LATE = "contact_told_late", "torque_told_late"
-"""How late forces and torques are told, or early."""
-STEPPED, OF_STEPPED = "friction_stepped", 0.5
-"""Friction as simulators step it, the damping f(v) / v of a tick's speed times the next one's, less
-friction as it is; a share of it."""
-FILTERED, OF_FILTER = "speed_filtered", 0.0015
-"""How late controllers take speeds for their damping [s]: drives filter them at 50-200 Hz, or
-difference positions (assumed)."""
+"""Height at which the ground's force acts under a pad: as soles wear, and as they yield under
+load."""
 SOLES = 0.004
-"""[m] (assumed)."""
+"""Deviation of both [m]."""
+FORCES_LATE, TORQUES_LATE = "contact_told_late", "torque_told_late"
+"""Delay of logged contact forces and of logged torques, with the deviation `lateness` [s]."""
+STEPPED, OF_STEPPED = "friction_stepped", 0.5
+"""Friction as simulators integrate it (damping f(v) / v at the speed before a step, times the speed
+after it) less friction at the speed itself, and the deviation of its share [-]."""
+FILTERED, OF_FILTER = "speed_filtered", 0.0015
+"""Delay of the speed that a controller's damping acts on, and its deviation [s]: drives filter
+speeds at 50-200 Hz, or difference positions."""
 UNLISTED = (*SPEEDS, SOLE, SOLE_GIVES, FORCES_LATE, FORCES_SCALED, TORQUES_LATE, STEPPED, FILTERED)
-"""Usual errors that are no effects of the catalogue, each with one parameter."""
-WAYS = (0.0015, 0.006)
-"""On which it turns over, half of each [rad]; assumed, beside that of `effects.joints.friction`."""
-SWINGS, OF_SWING = (0.5, 2.0), 0.7
-"""Other amplitudes of chatter over those that a log shows at its rate; share of the difference in
-friction (assumed)."""
-AT_ONCE, OF_WAY = 1.0, 0.3
-"""Share of the model's friction that turns over at once, and on each of these ways."""
+"""Nuisance parameters that belong to no effect of the catalogue, one of each name at a place."""
 
 
 @dataclass(frozen=True)
@@ -89,14 +91,13 @@ class NuisanceParameter:
 def nuisance_parameters(
     subject: Subject, step: float, calibrated: bool = False, rubbing: Subject | None = None
 ) -> list[NuisanceParameter]:
-    """Nuisance parameters of a robot.
+    """List the nuisance parameters of a robot.
 
     Args:
         subject: the robot.
         step: of its logs [s].
-        calibrated: whether reference logs tell of friction that the model does not have, which
-            turns over as the model's does.
-        rubbing: the robot with the dry friction that it has, where that is not the model's.
+        calibrated: whether there are reference logs, which show friction that the model lacks.
+        rubbing: the robot with the dry friction that its logs show, where the model has less.
     """
     usual = _Usual(rubbing or subject, step)
     found: list[NuisanceParameter] = []
@@ -175,7 +176,7 @@ class _Usual:
 
 
 def _give(subject: Subject, motor: int) -> float:
-    """Compliance of a belt or gear as they are, on the motor's side [rad/Nm]."""
+    """Compliance of a belt or gear that counts as stiff, on the motor's side [rad/Nm]."""
     inertia = float(subject.rotor_inertia[motor])
     of_belt = 1 / (inertia * (2 * np.pi * STIFF) ** 2) if inertia > 0 else 0.0
     of_gear = (

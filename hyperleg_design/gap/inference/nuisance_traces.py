@@ -101,8 +101,8 @@ def traces(signals: Signals, errors: Sequence[NuisanceParameter]) -> list[dict[s
 
 
 def _steered(signals: Signals) -> Signals:
-    """With targets by which the controllers would ask for just what the motion needs, where its
-    residual rests on them alone.
+    """Replace the targets by those with which the controllers would ask for the needed torque,
+    where torques are known from targets alone.
     """
     if not signals.steered:
         return signals
@@ -114,7 +114,7 @@ def _steered(signals: Signals) -> Signals:
 
 
 def _speeds(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
-    """Usual errors of a motor's speed beside its joints'."""
+    """Traces of `SPEEDS`: errors between a motor's speed and that of its joints."""
     if "transmission" not in signals.residual:
         return {}
     subject = signals.subject
@@ -132,7 +132,9 @@ def _speeds(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
 
 
 def _stepped(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
-    """Friction as simulators step it, less friction at once."""
+    """Trace of `STEPPED`: friction as simulators integrate it, less friction at the speed
+    itself.
+    """
     subject, half = signals.subject, signals.acceleration * signals.step / 2
     damping = friction_damping(
         subject.coulomb,
@@ -145,8 +147,8 @@ def _stepped(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
 
 
 def _filtered(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
-    """What speeds that controllers know late make them ask for; a motor's own back-EMF is never
-    late.
+    """Trace of `FILTERED`: torque that controllers ask for by the delay of their speeds. Motors
+    without current control are damped by their own back-EMF, which has no delay.
     """
     subject = signals.subject
     damping = np.where(
@@ -171,7 +173,7 @@ def _filtered(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]
 
 
 def _told(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
-    """Usual errors of what is told of forces and torques."""
+    """Traces of errors of logged forces and torques: delays, scale, and where forces act."""
     subject = signals.subject
     if one.effect == TORQUES_LATE:
         known = signals.measured is not None
@@ -208,8 +210,8 @@ def _told(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
 
 
 def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
-    """Friction that turns over at once less that of the model as it is; or on a way, less that at
-    once.
+    """Trace of `TURNOVER`: friction that reverses at once, less that of the model; or (`way` from
+    1) friction that reverses over a way, less friction that reverses at once.
     """
     subject, rows = signals.subject, np.zeros_like(signals.position)
     j = subject.joints.index(joint)
@@ -222,8 +224,8 @@ def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
 
 
 def _swung(signals: Signals, joint: str, place: int) -> dict[str, np.ndarray]:
-    """Friction of the model of a joint that chatters by another amplitude, less that by the one
-    that the log shows.
+    """Trace of `SWUNG`: mean friction of a joint in a limit cycle of another amplitude, less that
+    at the amplitude that the log shows.
     """
     subject = signals.subject
     j = subject.joints.index(joint)

@@ -1,4 +1,6 @@
-"""What every effect at every place would gain beside a hypothesis, at fixed scales."""
+"""What every effect at every place promises: the log evidence that it would gain beside a
+hypothesis at fixed scales, by which the search chooses what is worth a full fit.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,7 @@ LARGEST = 10.0
 
 @dataclass(frozen=True, eq=False)
 class Promise:
-    """An effect at a place and what it gains at fixed scales, by its columns or by one start."""
+    """An effect at a place, in one variant or from one start, and what it gains at fixed scales."""
 
     effect: str
     location: str
@@ -66,7 +68,7 @@ class _Beside:
 
 
 class Promises:
-    """Gains of all effects at all places on one body of evidence.
+    """Computes the gains of all effects at all places beside hypotheses on one body of evidence.
 
     Args:
         evidence: channels.

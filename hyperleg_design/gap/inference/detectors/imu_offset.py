@@ -1,13 +1,14 @@
-"""Constant errors of an IMU, seen without any residual: what it tells minus what the base's motion
-from elsewhere says it should.
+"""Constant errors of an IMU: its reading minus what the logged motion of the base predicts for it.
 
-A gyro minus the rate of a logged orientation, and an accelerometer minus the acceleration of a
-logged velocity with gravity, are noise about the sensors' errors; over seconds their mean is known
-a hundred times better than sensors are usually calibrated. No mass, friction or ground has a part
-in it. Only a vertical that leans, or a sensor that is turned against the base, looks like an
-accelerometer's error across the vertical: what leans stays in the world, what is turned goes with
-the force that is felt, and an error of the sensor does neither. Of a base that hardly turns, it is
-told that something leans.
+The gyro minus the rate of a logged orientation, and the accelerometer minus the acceleration of a
+logged velocity with gravity, are noise about the errors of the sensors. Over seconds their mean is
+known a hundred times better than sensors are usually calibrated. No mass, friction or ground
+enters.
+
+An error of the accelerometer across the vertical has two look-alikes: a vertical that leans, and a
+sensor that is mounted at an angle. The first is constant in the world, the second turns with the
+force on the sensor, and an error of the sensor is constant in its own frame. On a base that hardly
+turns they cannot be told apart, and the finding is that the vertical leans.
 """
 
 from __future__ import annotations
@@ -29,15 +30,17 @@ from hyperleg_design.gap.signals.smoothing import smooth
 PLACE = ImuBias.identifier, IMU
 OFFSET = "offset"
 CERTAIN = 5.0
-"""Its standard errors, at least."""
+"""Least size of an error over its standard error [-]."""
 PIECE, SHORTEST = 1.0, 0.25
-"""Of the means whose scatter gives the standard error, and of those of short logs at least [s]."""
+"""Length of the pieces of a log over which means are taken, whose scatter gives the standard error,
+and their least length in short logs [s]."""
 LEAST_PIECES = 4
 UPRIGHT = 0.15
 """Vertical part of an accelerometer's error over its horizontal one, below which it may be a
-vertical that leans."""
+vertical that leans [-]."""
 LEANING = 0.01
-"""Angle of a vertical from which it is told [rad] (assumed: robots stand as upright as that)."""
+"""Least angle of a vertical that is reported to lean [rad] (assumed: robots stand no more upright
+than that)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
-"""Ground that gives, seen without any residual: how much lower pads stand under more load.
+"""Soft ground: how much lower pads stand under more load.
 
-Where the floor lies, no log tells to a millimetre, and what errors of encoders and links make of a
-foot's height is about the same at all loads. But the slope of height over load is the compliance of
-ground and sole, in series, whatever masses and drives are.
+The height of the floor is not known to a millimetre, and errors of encoders and links shift the
+height of a foot by about as much at all loads. But the slope of height over load is the compliance
+of ground and sole in series, whatever the masses and drives are.
 """
 
 from __future__ import annotations
@@ -23,19 +23,21 @@ from hyperleg_design.gap.signals.signals import Signals
 EFFECT = GroundCompliance.identifier
 SINKS = "sinks"
 UNUSUAL = 1.5
-"""Usual errors of how the ground bears (`ground_compliance.USUAL`), from which one is a finding."""
+"""Least difference from the nominal compliance that is a finding, over the usual one
+(`ground_compliance.USUAL`) [-]."""
 CERTAIN = 3.0
-"""Its standard errors beyond that of no finding, at least."""
+"""Least excess of the compliance over the nominal one, in its standard errors [-]."""
 PADS = 0.1
-"""Of a compliance, that pads of one foot have in common unknown (assumed: their heights are off
-alike)."""
+"""Relative error of the compliance that all pads of a foot share [-] (assumed: their heights are
+off alike)."""
 LEAST_TICKS, LEAST_CONTACTS = 200, 4
-"""Of a pad under load in a log; pads, each log's for itself, whose scatter gives the standard
-error. Of a foot with fewer pads, such as a ball, each stands for several stretches of its log."""
+"""Least ticks of a pad under load in a log; and least number of pads, those of each log counted
+apart, whose scatter gives the standard error. A foot with fewer pads is cut into stretches of
+time."""
 VARIED = 4.0
-"""Standard deviation of a pad's load, at least [N]."""
+"""Least standard deviation of a pad's load [N]."""
 DEEPEST = 0.05
-"""To which the nominal ground is looked up [m]."""
+"""Depth up to which the nominal ground's force is tabulated [m]."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,11 +1,10 @@
-"""Ground that feet slide on, seen without any residual: what slides pushes back by mu times its
-load, against its way.
+"""Slippery ground: the ratio of tangential force to load of feet that slide.
 
-A pad that sticks may have any tangential force within its cone and one that creeps, in rubber as in
-soft contacts, has one that grows with its speed. But all that slides, however fast, has the same
-ratio of tangential force to load: mu, which is known to a few per cent after a tenth of a second.
-No mass, drive or sole has a part in it. The simulator's own pyramid of friction has another ratio
-in every direction, and is not taken for a slippery ground.
+A pad that sticks may have any tangential force within its friction cone, and one that creeps, in
+rubber as in soft contacts, has one that grows with its speed. But a foot that slides has the same
+ratio of tangential force to load at any speed: the friction coefficient mu, which is known to a few
+per cent after a tenth of a second. Masses, drives and soles do not enter. The friction pyramid of a
+simulator has another ratio in every direction, which is not taken for a slippery ground.
 """
 
 from __future__ import annotations
@@ -31,18 +30,21 @@ FAST = 0.015
 """Speed against the force from which a contact may slide [m/s] (assumed: above what encoders' noise
 makes)."""
 STRAIGHT = 2.0
-"""That speed over the one across, at least."""
+"""Least ratio of that speed to the one across the force [-]."""
 LEAST_TIME = 0.1
-"""In which it slides [s]."""
+"""Least time that a foot slides [s]."""
 SAME = 0.1
-"""Range of the middle half of the ratios over their median, at most: they are one."""
+"""Largest range of the middle half of the ratios over their median, so that they count as one
+coefficient [-]."""
 BEYOND, SELDOM = 1.1, 0.02
-"""No more than so many of all loaded ticks have a ratio so far over the one of sliding."""
+"""Ratio over the sliding one that loaded ticks exceed seldom [-], and the share of them that may
+[-]."""
 VARIED = 1.5
-"""Faster over slower slides (90 and 10 % of the time), at least: at one speed what creeps has one
-ratio, too."""
+"""Least ratio of fast to slow sliding (percentiles 90 and 10 of the speed) [-]: at a single speed a
+creeping foot has a single ratio, too."""
 UNUSUAL = 2.0
-"""Usual errors of the ground (`ground_friction.USUAL`), from which one is a finding."""
+"""Least difference from the nominal friction that is a finding, over the usual one
+(`ground_friction.USUAL`) [-]."""
 
 
 @dataclass(frozen=True, eq=False)
