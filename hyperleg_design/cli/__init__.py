@@ -36,7 +36,7 @@ class Gap:
     """Diagnose the gap between simulation and robot; `hyperleg gap --help` lists its verbs."""
 
     verb: Annotated[_union(gap.VERBS), tyro.conf.arg(name="")]  # type: ignore[valid-type]
-    """One of `gap.VERBS`."""
+    """What to do."""
 
     def run(self) -> None:
         """Run the verb of `hyperleg gap` that was chosen."""

@@ -228,7 +228,7 @@ class Compare(Printing):
 
 @dataclass(frozen=True, kw_only=True)
 class Sweep(Printing):
-    """Evaluate a sweep of designs; killed, it goes on where it stopped."""
+    """Evaluate a sweep of designs; the same command continues a run that was killed."""
 
     action: Annotated[Literal["run"], tyro.conf.Positional]
     """What to do with the sweep; there is only `run`."""

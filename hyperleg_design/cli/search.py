@@ -14,7 +14,7 @@ from hyperleg_design.cli.output import Printing, emit
 
 @dataclass(frozen=True, kw_only=True)
 class Search(Printing):
-    """Search the space of a sweep for good designs; killed, it goes on where it stopped."""
+    """Search the space of a sweep for good designs; the same command continues a killed run."""
 
     file: Annotated[str, tyro.conf.Positional]
     """Sweep whose axes are the space: shipped name or YAML file."""

@@ -102,7 +102,7 @@ class Trial:
     another than the design's."""
     told: Mapping[str, np.ndarray] = field(default_factory=dict)
     """What drives and sensors told, where alterations make that another thing; see
-    `simulation.told.Told`."""
+    `simulation.drives.told.Told`."""
 
     @property
     def joints(self) -> tuple[str, ...]:

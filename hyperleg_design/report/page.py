@@ -71,7 +71,7 @@ class Explorer:
     name: str
     """Unique in the page."""
     data: dict[str, Any]
-    """As `sweep.explorer` makes it."""
+    """As `report.sweep.explorer` makes it."""
 
 
 @dataclass(frozen=True)

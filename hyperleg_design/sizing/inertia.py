@@ -90,7 +90,7 @@ def leg_inertia(design: Design) -> LegInertia:
         Masses [kg], lengths [m] and the swing inertia [kg m^2], rotors not included.
 
     Raises:
-        InputError: as `robot.inertials.inertials`.
+        InputError: as `robot.mass.inertials.inertials`.
     """
     links = inertials(design)
     leg_mass = sum(np.asarray(links[name].mass) for name in LEG_LINKS)
@@ -134,7 +134,7 @@ def composite(
 
     Args:
         design: a robot or batch.
-        links: its inertials, of `robot.inertials.inertials`.
+        links: its inertials, of `robot.mass.inertials.inertials`.
         names: of the links, from `LEG_LINKS`.
 
     Returns:

@@ -92,7 +92,7 @@ def drawn(what: Any, path: str | os.PathLike[str]) -> bytes:
     """Draw a scene or a motion with `report.pictures.draw`, in a process of its own.
 
     Args:
-        what: anything that `report.draw` knows.
+        what: anything that `report.pictures.draw` knows.
         path: for messages.
 
     Returns:

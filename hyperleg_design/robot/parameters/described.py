@@ -1,8 +1,8 @@
 """What every family of designs shares: labelled leaves by dotted path, replaced and batched.
 
 A *family* is a way to describe robots. HyperLeg's (`robot.design.Design`) is a few parameters of a
-biped; the other (`robot.tree_design.TreeDesign`) is any kinematic tree, written out. Both describe
-one limb and say which copies of it the robot has; joints and motors are those of one limb.
+biped; the other (`robot.trees.tree_design.TreeDesign`) is any kinematic tree, written out. Both
+describe one limb and say which copies of it the robot has; joints and motors are those of one limb.
 """
 
 from __future__ import annotations
