@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.design_spread import DesignSpread
 
 EACH = "{}"
-"""In the path of a policy: it stands for the number of the design, one policy a design."""
+"""Stands for the number of a design in the path of policies that have one training each."""
 COST, SPEED = "cost_of_transport", "steady_speed"
 
 

@@ -23,11 +23,12 @@ STEEPEST = 30.0
 CELL = 0.2
 """Edge of a cell of the uneven floor [m]; assumed."""
 EDGE = 90.0
-"""Of the uneven floor, the start in its middle [m]: walks of 20 s at 2 m/s end on it."""
+"""Length of the sides of the uneven floor, with the start in its middle [m]: walks of 20 s at 2 m/s
+end on it."""
 FLAT = 0.6
 """Half the edge of the flat square that robots start on [m]."""
 _THICK = 0.5
-"""Of the uneven floor below its lowest point [m]."""
+"""Thickness of the uneven floor below its lowest point [m]."""
 
 
 @dataclass(frozen=True, eq=False)

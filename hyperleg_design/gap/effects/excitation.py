@@ -10,7 +10,7 @@ import numpy as np
 from hyperleg_design.gap.logs.log import Log
 
 REVERSALS = 4
-"""That friction needs to be told from a constant torque."""
+"""Least number of reversals by which friction can be told from a constant torque."""
 SWING = 0.3
 """Range of a joint that changes what gravity asks of it [rad]."""
 SLOW = 0.05

@@ -109,7 +109,8 @@ EXPERIMENTS: tuple[Experiment, ...] = (
         5,
     ),
 )
-"""Of which the cheapest is chosen; minutes are assumed."""
+"""Experiments, of which the cheapest that separates two effects is recommended; minutes are
+assumed."""
 ALONE = Experiment(
     "one joint at a time",
     "move each of the places alone, the others held, by a chirp and a slow ramp",

@@ -36,7 +36,7 @@ NOISE_TIME = 0.05
 BAND = 25.0
 """Of the traces that count [Hz]."""
 STEP = 0.1
-"""Of finite differences, over a parameter's scale."""
+"""Step of finite differences over the scale of a parameter [-]."""
 RANK = 1e-9
 """Least eigenvalue over the largest of a block that counts."""
 Place = tuple[str, str]

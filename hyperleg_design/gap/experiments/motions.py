@@ -51,7 +51,8 @@ SWING_FROM = (0.5, 0.3, 0.15)
 SETTLING = 0.3
 """Damping over strength with which the robot is let down to find where it hangs [s/rad]."""
 RANGE_SLACK = 1.15
-"""Of the free range that the rehearsal may use: some of what is kept free at the ends."""
+"""Range that the rehearsed motion may use over the free range [-]: some of what is kept free at the
+ends."""
 
 
 @dataclass(frozen=True, eq=False)

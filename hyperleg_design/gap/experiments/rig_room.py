@@ -31,13 +31,13 @@ LARGEST = 0.8
 NEARER = 0.7 ** np.arange(8)
 """Shares of `LARGEST` tried until the motors hold the posture between."""
 SPEED_SHARE, FASTEST = 0.6, 6.0
-"""Of the motors' no-load speed; and fastest joint [rad/s], for robots whose file gives no speed
-too; assumed."""
+"""Largest joint speed over the motors' no-load speed [-]; and largest joint speed of any robot
+[rad/s], also where the file states no speed; assumed."""
 TORQUE_SHARE = 0.8
-"""Of the envelope that a planned motion may use: the rest is left to the controller and to what the
-model lacks; assumed."""
+"""Share of the envelope that a planned motion may use [-]: the rest is left to the controller and
+to what the model lacks; assumed."""
 ACCELERATION_SHARE, HARDEST = 0.4, 250.0
-"""Of a joint's strength that a motion's acceleration of its own inertia may take; and largest
+"""Share of a joint's strength that accelerating its own inertia may take [-]; and largest
 acceleration [rad/s^2]; assumed."""
 UNKNOWN_RATED = 0.4
 """Continuous torque over peak torque of motors whose data sheet nobody gave; assumed."""

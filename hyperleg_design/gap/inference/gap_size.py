@@ -23,7 +23,7 @@ from hyperleg_design.gap.signals.signals import RESIDUALS
 COUNTS = 0.25
 """Channels count for the gap from this share of the largest excess of any (assumed)."""
 DRAWS = 400
-"""Of the block bootstrap."""
+"""Draws of the block bootstrap."""
 
 
 @dataclass(frozen=True, eq=False)

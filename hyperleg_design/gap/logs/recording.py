@@ -44,8 +44,8 @@ JOINT_SIGNALS = {
 """Signal of a simulation by that of a log."""
 BASE = ("base_position", "base_orientation", "base_velocity", "base_angular_velocity")
 TRIAL_SIGNALS = (*BASE, *JOINT_SIGNALS.values(), "motor_torque", "motor_velocity", "pad_force")
-"""Of a simulation that a log is made of; `base_angular_velocity` and `joint_target` may be
-missing."""
+"""Signals of a simulated trial from which a log is made; `base_angular_velocity` and `joint_target`
+may be missing."""
 
 
 def log_of_trial(

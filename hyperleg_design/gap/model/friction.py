@@ -7,7 +7,7 @@ import numpy as np
 from hyperleg_design.gap.model.subject import Subject
 
 PHASES = 48
-"""Of a swing over which friction is averaged."""
+"""Phases of an oscillation over which friction is averaged."""
 
 
 def sliding_share(velocity: np.ndarray, width: np.ndarray | float, swing: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ STILL = 0.05
 """Speed below which a joint stands still [rad/s]; assumed, some times what a position sensor
 resolves."""
 REVERSAL = 0.1
-"""[s] Around a change of direction; assumed, in which presliding and play show."""
+"""Time around a change of direction in which presliding and play show [s] (assumed)."""
 
 
 def regimes_of(

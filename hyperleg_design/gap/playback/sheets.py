@@ -15,11 +15,12 @@ from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.signals import RESIDUALS, Signals, row_names
 
 BAND = 10.0
-"""[Hz] Up to which torque residuals count (assumed; joints of legs and arms move below it)."""
+"""Frequency up to which torque residuals count [Hz] (assumed; joints of legs and arms move below
+it)."""
 BANDS = ((0.0, 1.0), (1.0, 3.0), (3.0, 10.0), (10.0, 25.0))
 """Frequency bands told apart [Hz]."""
 WINDOW = 0.25
-"""Of the predictions that give gaps of position and velocity [s]."""
+"""Length of the predictions that give gaps of position and velocity [s]."""
 TORQUE_SIGNALS = {
     residual_name: ("torque" if residual_name == "motion" else residual_name, *told)
     for residual_name, told in RESIDUALS.items()

@@ -36,7 +36,7 @@ LOWEST, HIGHEST = 0.2, 6.0
 AMPLITUDE = 0.4
 """Of the chirp at its lowest frequency [rad]; it falls as 1 / (1 + f / 2 Hz)."""
 KNEE_BEND, SPREAD = 0.15, 0.55
-"""Of the biped: bend of its thighs, and of both hips outward [rad]."""
+"""Posture of the shown biped: bend of its thighs, and turn of both hips outward [rad]."""
 NOTHING = 1e-9
 """Trace that counts as none [Nm, N]."""
 

@@ -20,7 +20,7 @@ NAMING = ("explained", "ambiguous")
 MOST_RIVALS = 8
 """Listed."""
 LEAST_SHARE = 0.02
-"""Of the excess, below which a place is not listed."""
+"""Share of the excess below which a place is not listed [-]."""
 SCHEMA_FILE = Path(__file__).with_name("diagnosis_schema.json")
 DIGITS = 6
 """Significant digits of numbers."""

@@ -30,8 +30,8 @@ WIDEST = 1.0
 OF_BANDWIDTH, OF_RATE = 0.9, 0.4
 """Cutoff over the frequency above which motion is noise, and over the log's rate."""
 OF_SPEEDS = 0.5
-"""The same of speeds that are not smoothed, against some that are: there the smoother lets 98 %
-pass."""
+"""Cutoff over the same frequency, of logged speeds that are compared with smoothed ones [-]: there
+the smoother passes 98 %."""
 WITHOUT_BANDWIDTH = 10.0
 """Cutoff of joints whose smoother's bandwidth is unknown [Hz]."""
 WITHOUT_JOINTS = {"base": 10.0, "ground": 20.0}

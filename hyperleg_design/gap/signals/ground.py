@@ -43,7 +43,7 @@ base is (assumed)."""
 KEPT = 32
 """Results of `Footing.pressing` that are kept."""
 HALVINGS = 34
-"""Of the range in which the floor is sought: to a nanometre."""
+"""Bisections of the range in which the height of the floor is sought: to a nanometre."""
 LOADED = 10 * TOUCHING_FORCE
 """Force from which a foot is judged [N]; below, directions are noise (assumed)."""
 

@@ -22,11 +22,13 @@ before they slide."""
 LEAST_LINE = 0.5
 """Share of what smoothing leaves that a line must have; white noise has a tenth."""
 HALF_WIDTH = 6
-"""Of a line, in steps of the spectrum; its frequency wanders with posture and load."""
+"""Half width of the line of a limit cycle, in steps of the spectrum; its frequency wanders with
+posture and load."""
 SEGMENT = 256
 """Ticks of a piece of the averaged spectrum."""
 LOWEST = 0.15
-"""Of a line, over the log's rate: 30 Hz at 200 Hz; commanded motion may leave something below."""
+"""Least frequency of a limit cycle over the rate of the log [-]: 30 Hz at 200 Hz; below it,
+commanded motion may leave something."""
 ABOVE = 1.3
 """Lowest frequency of a line over that of the smoother."""
 WINDOW = 0.2

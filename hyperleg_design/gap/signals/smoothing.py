@@ -24,7 +24,7 @@ KNOTS_PER_RADIAN = 2.0
 """Knots in a radian of the crossover: a spline this dense follows all that the crossover lets
 pass."""
 LOWEST_CROSSOVER = 1.0
-"""[Hz] Below this a log would say nothing about accelerations; assumed."""
+"""Lowest crossover [Hz]: below it a log would say nothing about accelerations; assumed."""
 CROSSOVERS = 48
 """Crossovers tried, spaced evenly in their logarithm."""
 STEEPER = (0, 1, 3)

@@ -19,8 +19,8 @@ WIDTH, TALLEST, LOWEST = 460.0, 300.0, 150.0
 MARGIN, MIDDLE = 14.0, 130.0
 """Around the drawing, and the largest width of the robot in it: names stand on both sides."""
 TURN, TILT = np.radians(30.0), np.radians(14.0)
-"""Of the view, about the vertical from the side on which most joints bend, and from above [rad]:
-left and right legs do not hide each other."""
+"""Turn of the view about the vertical, from the side on which most joints bend, and its tilt from
+above [rad]: left and right legs do not hide each other."""
 NAMED, LEAST_NAMED = 5, 0.02
 """Largest number of joints that are named, and the least share of one."""
 LINE = 15.0

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from hyperleg_design.robot.parameters.described import RobotDesign
 
 COLOURS = ("#c8602a", "#2f6db3")
-"""Of the first and the second design, told apart by colour-blind readers too."""
+"""Colours of the first and the second design, which colour-blind readers can tell apart, too."""
 BUTTONS = (
     "toimage",
     "senddatatocloud",

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 TITLE = "Impacts over the stiffness of the sole"
 PEAK = "grf_peak_body_weights"
 RESAMPLES = 1000
-"""Of each interval in the table."""
+"""Bootstrap samples of each interval in the table."""
 
 
 def impacts(evaluated: Evaluated, draw: Drawer) -> Part:

@@ -25,8 +25,8 @@ ORDERS = np.arange(1.0, 201.0)
 """Periods a turn that a search tries: of motors that count at the output of their gear, as many
 more as it has."""
 ALWAYS = 48
-"""Of these, how many are tried however fast the motor turns; more as long as half of a log shows
-them below `HIGHEST`."""
+"""Orders up to this one are always tried; higher ones only if the motor turns so slowly in half of
+the log that their ripple stays below `HIGHEST`."""
 TRIED = 3
 """Best orders kept as starts of a search."""
 COSINE_SOURCE = (

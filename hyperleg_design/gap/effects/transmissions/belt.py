@@ -44,12 +44,13 @@ from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.transmission import turned
 
 BAND = 0.2
-"""Of the transmitted torque that stretches a belt, over the log's rate: 40 Hz at 200 Hz."""
+"""Highest frequency of the transmitted torque that stretches a belt, over the rate of the log [-]:
+40 Hz at 200 Hz."""
 
 CHOSEN = 0.5
 """From which a choice between 0 and 1 is 1."""
 BEHIND_BAND = 15.0
-"""Of what stretches a belt whose joint rubs behind it [Hz]; above, noise of the torque would make a
+"""The same of a belt with friction at its joint [Hz]; above it, noise of the torque would make a
 joint at rest turn round (assumed)."""
 BRISTLES = 3e-3
 """Way over which a joint behind its belt turns its friction over [rad]; assumed: as well as its

@@ -22,7 +22,7 @@ CROSSING, CROSSING_BAND = 0.8, 0.15
 """c, the load below which a rotor that does not coast is on its way across; band of its crossing,
 over the log's rate (assumed)."""
 LEAST_SHARE = 1e-3
-"""Of the largest inertia of a joint over a log, at least, where its posture is not known."""
+"""Least inertia of a joint where its posture is unknown, over the largest one in the log [-]."""
 
 
 def slack(

@@ -23,7 +23,7 @@ from hyperleg_design.simulation.drives.two_mass import DAMPING_RATIO, Belt
 RESONANCE = 12.0
 """Usual frequency of a rotor on its belt, its joint held [Hz]: belts ring at 5-30 Hz."""
 RESONANCES = (40.0, 20.0, 10.0, 5.0)
-"""That a search starts from [Hz]."""
+"""Resonance frequencies from which a search starts [Hz]."""
 SLOWEST = 0.5
 """Lowest frequency of a rotor on its belt that is searched [Hz]."""
 STIFFER = 30.0

@@ -18,13 +18,13 @@ from hyperleg_design.gap.signals.stop_operator import stop
 SHAPES = 8
 """Most functions of one input."""
 WAVES = (1.0, 2.0, 4.0, 8.0)
-"""Of functions of an angle, octaves [1/rad] (assumed)."""
+"""Wave numbers of functions of an angle, in octaves [1/rad] (assumed)."""
 SPEED = 2.0
 """Scale of speeds [rad/s] (assumed)."""
 SLOW, FAST = 0.3, 2.0
 """Speeds over which what is there at rest fades [rad/s] (assumed)."""
 WAYS = (0.02, 0.05, 0.15, 0.4)
-"""On which a torque that remembers turns over, half of each [rad] (assumed)."""
+"""Half of the ways over which a torque with hysteresis reverses [rad] (assumed)."""
 
 
 @memoized

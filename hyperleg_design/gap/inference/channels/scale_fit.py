@@ -20,7 +20,7 @@ from hyperleg_design.gap.inference.rules import InferenceRules
 STEPS = (1.2, 0.5, 0.2)
 """Steps of the search for a scale's logarithm, each halved about [-]."""
 MOST_STEPS = 4
-"""Of each of `STEPS`."""
+"""Most steps of one size in the search for a scale."""
 
 
 def first_scales(channel: Channel, rules: InferenceRules) -> Scales:
