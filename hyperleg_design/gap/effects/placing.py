@@ -229,27 +229,21 @@ def _spring_and_damper(signals: Signals, motor: int) -> tuple[np.ndarray, np.nda
 
 
 def motor_position(signals: Signals, motor: int) -> np.ndarray:
-    """M^T q of one motor `(t,)` [rad].
+    """Compute the angle of one motor, M^T q `(t,)` [rad].
 
     Args:
         signals: a conditioned log, `t` ticks.
         motor: index of the motor.
-
-    Returns:
-        The angle `(t,)` [rad].
     """
     return np.asarray(signals.position @ signals.subject.joint_from_motor[:, motor])
 
 
 def motor_velocity(signals: Signals, motor: int) -> np.ndarray:
-    """M^T q_dot of one motor `(t,)` [rad/s].
+    """Compute the speed of one motor, M^T q_dot `(t,)` [rad/s].
 
     Args:
         signals: a conditioned log, `t` ticks.
         motor: index of the motor.
-
-    Returns:
-        The speed `(t,)` [rad/s].
     """
     return np.asarray(signals.velocity @ signals.subject.joint_from_motor[:, motor])
 

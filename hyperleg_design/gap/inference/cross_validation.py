@@ -53,27 +53,30 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
     stack = Stack.of(hypothesis.causes, weight) if hypothesis.causes else None
     before = np.zeros(len(fold))
     trace, unlisted = np.zeros(len(fold)), np.zeros(len(fold))
-    for held in range(samples.folds):
-        kept = (fold != held) | ~tested
-        channels = tuple(_without(one, kept) for one in evidence.channels)
+    for left_out in range(samples.folds):
+        fitted = (fold != left_out) | ~tested
+        channels = tuple(_without(one, fitted) for one in evidence.channels)
         left, own, odd = np.zeros((3, len(fold)))
         if stack is not None:
             last = bool(stack.constant.any())
-            columns = stack.columns * kept
-            columns = np.concatenate([columns, stack.constant[None] * kept]) if last else columns
+            columns = stack.columns * fitted
+            columns = np.concatenate([columns, stack.constant[None] * fitted]) if last else columns
             part = replace(evidence, channels=channels)
             products = shifted(reduced(part, hypothesis.scales, columns), last)
-            found = solve(products, stack.low, stack.high, stack.shape, rules, stack.factors)
-            left = found.theta @ stack.columns + stack.constant
+            solution = solve(products, stack.low, stack.high, stack.shape, rules, stack.factors)
+            left = solution.theta @ stack.columns + stack.constant
             for piece, cause in zip(hypothesis.parts, hypothesis.causes, strict=True):
-                if not cause.standing:
-                    sum_of = odd if cause.effect in UNLISTED else own
-                    sum_of += cause.trace(found.theta[piece]) * weight
+                if cause.standing:
+                    continue
+                if cause.effect in UNLISTED:
+                    odd += cause.trace(solution.theta[piece]) * weight
+                else:
+                    own += cause.trace(solution.theta[piece]) * weight
         for whole, some, scales in zip(evidence.channels, channels, hypothesis.scales, strict=True):
-            means, _ = discrepancy_posterior(some.without(left * kept), scales)
+            means, _ = discrepancy_posterior(some.without(left * fitted), scales)
             healthy = healthy_share(whole, scales, rules)
             for cell, (place, white) in enumerate(zip(whole.places, whole.whitened, strict=True)):
-                mine = (fold[place] == held) & tested[place]
+                mine = (fold[place] == left_out) & tested[place]
                 if not mine.any():
                     continue
                 at = place[mine]
@@ -106,9 +109,9 @@ def healthy_share(channel: Channel, scales: Scales, rules: InferenceRules) -> fl
     return float(np.exp(min(most - scales.standing, 0.0)))
 
 
-def _without(channel: Channel, kept: np.ndarray) -> Channel:
+def _without(channel: Channel, fitted: np.ndarray) -> Channel:
     """A channel whose samples are those of a mask `(S,)`."""
     white = tuple(
-        one * kept[place] for one, place in zip(channel.whitened, channel.places, strict=True)
+        one * fitted[place] for one, place in zip(channel.whitened, channel.places, strict=True)
     )
     return replace(channel, whitened=white, products=np.array([one @ one.T for one in white]))

@@ -12,7 +12,6 @@ from __future__ import annotations
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.logs.frozen import frozen
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import KEPT_FROM
 from hyperleg_design.gap.model import friction, pads, rigid
@@ -29,10 +28,11 @@ from hyperleg_design.gap.signals.channels import (
 )
 from hyperleg_design.gap.signals.control import control_residual
 from hyperleg_design.gap.signals.ground import ground_residual
+from hyperleg_design.gap.signals.joint_motion import joint_motion
 from hyperleg_design.gap.signals.limit_cycle import limit_cycle
 from hyperleg_design.gap.signals.sensed import sensed_velocity
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.gap.signals.smoothing import Smooth, smooth
+from hyperleg_design.gap.signals.smoothing import Smooth
 from hyperleg_design.simulation.drives import limits
 
 EDGE = 4.0
@@ -68,28 +68,9 @@ def condition(log: Log, subject: Subject) -> Signals:
     ticks = log.time[0] + step * np.arange(int(np.floor(log.duration / step + 1e-6)) + 1)
     if len(ticks) < 16:
         raise InputError(log.name, "t", len(ticks), "is too short a log: expects at least 16 ticks")
-    notes = []
-    position = log.stack("position", subject.joints)
-    for column, joint in enumerate(subject.joints):
-        if (stuck := frozen(log, joint)) is not None:
-            position[stuck, column] = np.nan
-            notes.append(
-                f"{joint}: position frozen from {log.time[stuck.start]:.4g} s, left out until it "
-                f"moves again"
-            )
-    velocity = log.stack("velocity", subject.joints)
-    motion = smooth(log.time, position, ticks, velocity)
-    lacking = ~np.isfinite(motion.value).any(0)
-    if lacking.all():
-        remedy = f"knows no joint of this robot, {', '.join(subject.joints)}"
-        raise InputError(log.name, "position", sorted(log.joints)[:8], remedy)
-    if lacking.any():
-        notes.append(
-            f"joints without positions in this log, taken to stand still: "
-            f"{_names(subject.joints, lacking)}"
-        )
-        motion.value[:, lacking] = subject.default[lacking]
-        motion.first[:, lacking] = motion.second[:, lacking] = 0.0
+    joints = joint_motion(log, subject, ticks)
+    position, velocity = joints.position, joints.velocity
+    motion, lacking, notes = joints.smooth, joints.lacking, [*joints.notes]
     base = None
     if subject.floating:
         base, derived = base_motion(log, subject, ticks)
@@ -100,17 +81,10 @@ def condition(log: Log, subject: Subject) -> Signals:
     measured = _measured(log, subject, ticks)
     command, jump, target, control, others = _command(log, subject, ticks, motion, seen, measured)
     residual: dict[str, np.ndarray] = {}
-    speed = motion.first @ subject.joint_from_motor
-    if (
-        spin := resampled_or_none(log.time, of_motors(log, "motor_velocity", subject), ticks)
-    ) is not None:
-        spin[:, np.abs(subject.joint_from_motor[lacking]).sum(0) > 0] = np.nan
-        if np.isfinite(spin).any():
-            residual["transmission"], refused = transmission.transmission_residual(
-                subject, spin, motion.first, step
-            )
-            notes += refused
-            speed = np.where(np.isfinite(residual["transmission"]), spin, speed)
+    speed, slip, refused = _motor_speeds(log, subject, ticks, motion.first, lacking)
+    notes += refused
+    if slip is not None:
+        residual["transmission"] = slip
     limited = None if command is None else limited_torque(subject, command, speed, voltage, jump)
     believed, more = _believed(log, subject, measured, limited)
     notes += more
@@ -142,15 +116,8 @@ def condition(log: Log, subject: Subject) -> Signals:
         unknown | lacking, np.nan, applied(subject.joint_from_motor, believed) - needed
     )
     if measured is not None and limited is not None:
-        residual["drive"] = measured - limited
-        drive = residual["drive"]
-        drive[:, ~_driven(subject)] = np.nan
-        copied = np.isfinite(drive).any(0) & ~np.nan_to_num(drive).any(0)
-        if copied.any():
-            notes.append(
-                f"motors whose measured torques repeat their commands, as those of drives without "
-                f"any fault do: {', '.join(np.array(subject.motors)[copied])}"
-            )
+        residual["drive"], repeated = _drive_residual(subject, measured, limited)
+        notes += repeated
     if control is not None:
         residual["control"] = control
     if others:
@@ -194,6 +161,39 @@ def condition(log: Log, subject: Subject) -> Signals:
     if of_ground is not None:
         residual["ground"] = of_ground
     return signals
+
+
+def _motor_speeds(
+    log: Log, subject: Subject, ticks: np.ndarray, velocity: np.ndarray, lacking: np.ndarray
+) -> tuple[np.ndarray, np.ndarray | None, list[str]]:
+    """Speeds of the motors, logged or by their joints `(t, m)` [rad/s]; the residual of the
+    transmission, None where no speed of a motor is logged; and notes.
+    """
+    speed = velocity @ subject.joint_from_motor
+    spin = resampled_or_none(log.time, of_motors(log, "motor_velocity", subject), ticks)
+    if spin is None:
+        return speed, None, []
+    spin[:, np.abs(subject.joint_from_motor[lacking]).sum(0) > 0] = np.nan
+    if not np.isfinite(spin).any():
+        return speed, None, []
+    slip, refused = transmission.transmission_residual(subject, spin, velocity, log.step)
+    return np.where(np.isfinite(slip), spin, speed), slip, list(refused)
+
+
+def _drive_residual(
+    subject: Subject, measured: np.ndarray, limited: np.ndarray
+) -> tuple[np.ndarray, list[str]]:
+    """Measured motor torques minus the commands within limits `(t, m)` [Nm], and notes."""
+    drive = measured - limited
+    drive[:, ~_driven(subject)] = np.nan
+    copied = np.isfinite(drive).any(0) & ~np.nan_to_num(drive).any(0)
+    if not copied.any():
+        return drive, []
+    note = (
+        f"motors whose measured torques repeat their commands, as those of drives without any "
+        f"fault do: {', '.join(np.array(subject.motors)[copied])}"
+    )
+    return drive, [note]
 
 
 def wrong_limits(subject: Subject, position: np.ndarray) -> np.ndarray:
