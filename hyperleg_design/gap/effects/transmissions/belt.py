@@ -1,28 +1,35 @@
-"""What belts that stretch or have play leave in a log: motor and joint as two masses, the motion of
-one of them known.
+"""Belts, cables and gears that stretch or have play: the residual that they leave. Motor and joint are
+two masses, the motion of one of which is logged.
 
-The rotor turns by M^T q + s. Where positions are the joints' own (`side` 0) the rotor's inertia J
-takes J s'' beyond a rigid belt's torque, and a rotor whose own speed is logged turns s' faster than
-its joints. Where they are those of the rotors, taken for the joints' (`side` 1), the joints stand s
-/ M behind, and need another torque for that. Between, encoders on both sides are mixed.
+The rotor turns by M^T q + s [rad]; s is the stretch, or the place in the dead zone.
 
-A belt that gives is stretched by what the joints need through it, u = [M^-1 (needed torque less the
-rotors')]: s = compliance u, filtered by the belt's damping; one that stiffens, k (1 + (stiffening
-s)^2) s = u with `stiffening` at the joint that it moves most. Friction of gears acts on the rotor,
-before the belt; that of joints behind it (`behind` 1). With encoders on the rotors the two differ:
-joints that rub behind a soft belt stay where they are while the rotor turns round, and turn round
-themselves later, so that the belt is stretched by what the motor gives it, and friction follows the
-joint's own way; friction before it stretches no belt. In a dead zone of width w nothing is
-transmitted, and s moves by itself,
+- Encoders at the joints (`side` 0): the logged motion is that of the joints. The rotor, of inertia
+  J, needs J s'' beyond the torque of a rigid belt. A logged speed of the rotor exceeds that of the
+  joints by s'.
+- Encoders at the rotors (`side` 1): the logs take the motion of the rotors for that of the joints.
+  The joints stand s / M behind, and need the torque of their own motion.
+- Values of `side` between mix both.
+
+**Stretch.** The torque through the belt is u = [M^-1 (needed torque less the rotors')], and
+s = compliance u, filtered by the belt's damping. A belt that stiffens follows
+k (1 + (stiffening s)^2) s = u, with `stiffening` at the joint that it moves most.
+
+**Friction.** Friction of gears acts on the rotor, before the belt, and stretches no belt. That of
+joints may act behind it (`behind` 1), which matters with encoders at the rotors: the joint stands
+still while the rotor reverses, and reverses later. So the belt is stretched by what the motor gives
+it, and friction follows the motion of the joint.
+
+**Play.** In a dead zone of width w nothing is transmitted, and s moves by itself,
 
     side 0: J s'' = tau - J M^T q_ddot      the rotor alone under its torque, and the friction that acts before the belt
-    side 1: I s'' = u                       the joint left behind, of inertia I at the motor, by as much as it would need, its own
-                                            friction along where it rubs itself
+    side 1: I s'' = u                       the joint alone, of inertia I at the motor, under the torque that it would need,
+                                            and its own friction where that acts behind the belt
 
-until it meets +-w/2, where a rotor bounces a little (`slack.RESTITUTION`), and stays while pushed. Both
-are limited to the band that a log resolves. A rotor that rubs, or whose torque is not known well,
-does not coast like that: then it lies at the end that the load pushes it to, and crosses over as
-the load turns round, s = w / 2 tanh(u / (c rms u)); `coasting` mixes the two.
+until it meets +-w/2. There a rotor bounces a little (`slack.RESTITUTION`), and stays while it is
+pushed. A rotor with friction, or one whose torque is not known well, does not coast like that: it
+lies at the end to which the load pushes it, and crosses over when the load reverses,
+s = w / 2 tanh(u / (c rms u)). `coasting` mixes the two. Both are limited to the band that a log
+resolves.
 """  # noqa: E501
 
 from __future__ import annotations

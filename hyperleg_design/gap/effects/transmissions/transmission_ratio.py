@@ -36,13 +36,16 @@ class TransmissionRatio(MotorEffect):
     """A motor turns `scale` times as fast over its joints as the model says, and pulls on them
     `scale` times as hard.
 
-    Where positions are the joints' own (`side` 0), the trace is (1 - scale) tau + (scale^2 - 1) J
-    M^T q_ddot on the motor's side, the second part as the rotor turns faster too: apart from it,
-    and from the rotor's speed where that is logged, this looks like a torque constant. Where they
-    are worked out from rotors by the model (1), the joints stand elsewhere, at q + (1 / scale - 1)
-    P M^T q, P the motor's row of the inverse of M, and the trace is (1 - scale) (tau - J M^T
-    q_ddot) and what that motion needs more than the logged one, friction included: of coupled
-    joints one may stand while its encoders say that it turns.
+    Where positions are the joints' own (`side` 0), the trace on the motor's side is
+
+        (1 - scale) tau + (scale^2 - 1) J M^T q_ddot.
+
+    The second part is there because the rotor turns faster, too. Without it, and without a logged
+    speed of the rotor, the effect looks like a torque constant. Where positions are computed from
+    the rotors with the model's ratio (`side` 1), the joints stand elsewhere, at q + (1 / scale - 1)
+    P M^T q, with the motor's row P of the inverse of M. The trace is (1 - scale) (tau - J M^T
+    q_ddot) and what that motion needs beyond the logged one, friction included: of coupled joints,
+    one may stand still while its encoders say that it turns.
     """
 
     identifier: ClassVar[str] = "transmission_ratio"
