@@ -148,23 +148,25 @@ def gather(
         blocks += int(duration / BLOCK) + 1
         where.append(tuple(places))
     joined = [np.concatenate(column) if column else np.zeros(0) for column in table]
+    value, floor, share, felt, *indices = joined
+    row_of, group_of, part_of, block_of = (index.astype(int) for index in indices)
     log_of = np.array([log for log, _ in parts])
     return Samples(
-        tuple(filtered_logs),
-        tuple(first.values()),
-        joined[0],
-        joined[1],
-        joined[2],
-        joined[3],
-        joined[4].astype(int),
-        joined[5].astype(int),
-        joined[6].astype(int),
-        joined[7].astype(int),
-        tuple(where),
-        np.array([band for _, band in groups]),
-        np.array(sessions)[log_of],
-        np.array([(chunk + log) % FOLDS for log, chunk in parts]),
-        log_of,
+        filtered_logs=tuple(filtered_logs),
+        rows=tuple(first.values()),
+        value=value,
+        floor=floor,
+        share=share,
+        felt=felt,
+        row=row_of,
+        group=group_of,
+        part=part_of,
+        block=block_of,
+        where=tuple(where),
+        group_band=np.array([band for _, band in groups]),
+        session=np.array(sessions)[log_of],
+        fold=np.array([(chunk + log) % FOLDS for log, chunk in parts]),
+        log=log_of,
     )
 
 

@@ -144,9 +144,23 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     unseen = bool(effect.driver) and all(
         getattr(s.signals, effect.driver) is None for s in samples.filtered_logs
     )
-    numbers = values, nulls, usual, low, high, shape, columns, constant
-    facts = effect.linear, declared, scaled, unseen, subject.tree.beyond(location)
-    return Cause(effect.identifier, location, *numbers, *facts)
+    return Cause(
+        effect.identifier,
+        location,
+        values=values,
+        nulls=nulls,
+        usual=usual,
+        low=low,
+        high=high,
+        shape=shape,
+        columns=columns,
+        constant=constant,
+        linear=effect.linear,
+        declared=declared,
+        factors=scaled,
+        unseen=unseen,
+        beyond=subject.tree.beyond(location),
+    )
 
 
 def _columns(
