@@ -56,7 +56,7 @@ def sliding(signals: Signals) -> np.ndarray:
 @memoized
 def dry_friction(signals: Signals) -> np.ndarray:
     """Dry friction of each joint: the model's; where it has none, what the residual shows, if the
-    way of sliding explains most of it.
+    way of sliding explains most of it beside a rotor that the model lacks.
 
     Args:
         signals: conditioned log.
@@ -66,7 +66,10 @@ def dry_friction(signals: Signals) -> np.ndarray:
     """
     residual = signals.residual["motion"]
     known = signals.valid[:, None] & np.isfinite(residual)
-    way, left = np.where(known, sliding(signals), 0.0), np.where(known, residual, 0.0)
+    columns = sliding(signals), residual, signals.acceleration
+    way, left, fast = (np.where(known, np.nan_to_num(column), 0.0) for column in columns)
+    square = np.maximum(np.sum(fast**2, 0), 1e-300)
+    way, left = (each - fast * np.sum(fast * each, 0) / square for each in (way, left))
     along, ways, whole = (np.sum(x, 0) for x in (way * left, way**2, left**2))
     shown = np.divide(along, ways, out=np.zeros_like(along), where=ways > 0)
     shown[along**2 < MOST * ways * whole] = 0.0

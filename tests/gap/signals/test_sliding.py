@@ -3,9 +3,10 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from hyperleg_design.gap.signals.limit_cycle import PRESLIDING
-from hyperleg_design.gap.signals.sliding import presliding, sliding
+from hyperleg_design.gap.signals.sliding import dry_friction, presliding, sliding
 
 
 class Shown:
@@ -52,3 +53,19 @@ def test_sliding_is_kept_at_rest():
 def test_presliding_grows_with_the_noise():
     assert presliding(shown(np.zeros(10)))[0] == PRESLIDING
     assert presliding(shown(np.zeros(10), noise=0.01))[0] > 5 * PRESLIDING
+
+
+@pytest.mark.parametrize(("friction", "shown_friction"), [(0.9, 0.9), (0.0, 0.0)])
+def test_dry_friction_is_told_beside_a_rotor_that_the_model_lacks(friction, shown_friction):
+    time = np.arange(4000) * 0.005
+    position = 0.5 * np.sin(3 * time) + 0.2 * np.sin(7 * time)
+    velocity = 1.5 * np.cos(3 * time) + 1.4 * np.cos(7 * time)
+    acceleration = -4.5 * np.sin(3 * time) - 9.8 * np.sin(7 * time)
+    signals = shown(position)
+    signals.acceleration = acceleration[:, None]
+    signals.valid = np.ones(len(time), bool)
+    signals.subject.coulomb = np.zeros(1)
+    noise = np.random.default_rng(2).normal(0, 0.1, len(time))
+    left = friction * np.sign(velocity) + 0.3 * acceleration + noise
+    signals.residual = {"motion": left[:, None]}
+    assert dry_friction(signals)[0] == pytest.approx(shown_friction, rel=0.05)
