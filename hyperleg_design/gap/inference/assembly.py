@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import WEIGHED
@@ -20,6 +19,7 @@ from hyperleg_design.gap.inference import noise_model, nuisance, nuisance_traces
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.channel import Channel
 from hyperleg_design.gap.inference.channels.discrepancy import MOTORS, load, shapes
+from hyperleg_design.gap.inference.channels.rotation import rotated
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import SLOWEST_BANDS, Samples, gather
@@ -49,13 +49,16 @@ class Evidence:
     """Deviation of the usual calibration error of an effect's parameter at a place."""
     moved: tuple[float, ...]
     """Share of the numbers of each channel in which the torque of its drives is no noise."""
+    expected: tuple[float, ...]
+    """Independent numbers that the expected noise of each channel's references counts for."""
 
     def paying(self, factor: Factor, trace: np.ndarray, standing: bool) -> Factor:
         """What scaling torques costs, as far as they are no noise in the channels that are made of
         them; once, as these channels are made of the same torques, where most of them are.
 
         Where they are scaled in all logs, friction and rotors may be, too, and all that is left to
-        gain by larger ones is noise nearer to the expected one: that counts for nothing.
+        gain is noise nearer to the expected one: that counts for nothing, by larger torques or by
+        smaller ones.
 
         Args:
             factor: of a cause.
@@ -64,12 +67,13 @@ class Evidence:
         """
         rows = [(row.residual_name, row.column) for row in self.samples.rows]
         number, at = 0.0, factor.row  # rows of the tests are the first ones
-        for channel, share in zip(self.channels, self.moved, strict=True):
+        for channel, share, expected in zip(self.channels, self.moved, self.expected, strict=True):
             row = rows.index((channel.residual, channel.column))
             place = channel.samples if standing else channel.under_test
             others = not factor.alone and channel.residual in MOTORS
             if row == factor.row or (others and np.any(trace[place] != 0)):
                 numbers = share * float(self.samples.share[place].sum())
+                numbers += expected if standing else 0.0
                 number, at = max((number, at), (numbers, row), key=lambda one: one[0])
         return replace(factor, number=number, row=at, shows=0.0 if standing else factor.shows)
 
@@ -230,6 +234,10 @@ def evidence_of(
             for parameter, spread in enumerate(spreads)
         },
         tuple(moved for _, moved in made),
+        tuple(
+            rules.noise.weight * (len(channel.numbers) - len(channel.bands_tested))
+            for channel, _ in made
+        ),
     )
 
 
@@ -312,7 +320,7 @@ def _channel(
             cells.append(((number, s), (number, b), number_of, first + own[mine]))
     sessions = sorted({cell[0] for cell in cells})
     bands = sorted({cell[1] for cell in cells})
-    white, steady = _rotated(
+    white, steady = rotated(
         white, sets[0].steady if len(sessions) > 1 else 0, rules.discrepancy.truncation
     )
     return Channel(
@@ -374,24 +382,3 @@ def _feigned(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarra
                 columns[2 * b, at] = share * slow[mine]
                 columns[2 * b + 1, at] = share * fast[mine] / float(np.mean(rate[mine]))
     return found, clean / max(whole, 1e-300)
-
-
-def _rotated(
-    white: Sequence[np.ndarray], steady: int, truncation: float
-) -> tuple[list[np.ndarray], int]:
-    """Columns turned to the directions that the samples show, residual last: among the first
-    `steady` ones, and among the others, of which one is left at least. Columns of either kind have
-    the same prior, which no rotation changes.
-
-    Returns:
-        By cell, the turned columns, and how many of them are steady.
-    """
-    total = sum((one[:-1] @ one[:-1].T for one in white), np.zeros(()))
-    turns = []
-    for part in (slice(steady), slice(steady, None)):
-        values, axes = np.linalg.eigh(total[part, part])
-        shown = values > truncation
-        shown[-1:] |= part.stop is None
-        turns.append(axes[:, shown])
-    turn = block_diag(*turns).T
-    return [np.concatenate([turn @ one[:-1], one[-1:]]) for one in white], turns[0].shape[1]

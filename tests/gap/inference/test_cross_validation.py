@@ -33,7 +33,7 @@ def evidence(sessions: int, rng: np.random.Generator) -> Evidence:
         weight=rng.uniform(0.5, 2.0, size),
     )
     tests = SimpleNamespace(value=np.zeros(len(channel.under_test)))
-    return Evidence((channel,), samples, tests, (), (), {}, (1.0,))
+    return Evidence((channel,), samples, tests, (), (), {}, (1.0,), (0.0,))
 
 
 def scales_of(channel) -> Scales:
