@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.special import log_ndtr
@@ -11,7 +11,7 @@ from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis
+from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis, Name
 from hyperleg_design.gap.inference.rules import InferenceRules
 
 PER_PARAMETER = 0.5
@@ -27,11 +27,10 @@ def log_prior(
 ) -> float:
     """Compute the log prior probability of a set of causes at their values.
 
-    Each effect is as likely as any other, at each of its places, or at all of them. Likelier are an
-    effect that acts at another place already, and friction of another kind where a joint has some
-    already. A cause whose size is a usual calibration error is unlikely to be a fault
-    (`beyond_usual`); but one that acts in the references, too, may be as small as that, since it is
-    in the hypothesis so that no change takes its place.
+    It is that of their effects and places, and that of their sizes. A cause whose size is a usual
+    calibration error is unlikely to be a fault (`beyond_usual`); but one that acts in the
+    references, too, may be as small as that, since it is in the hypothesis so that no change takes
+    its place.
 
     Args:
         hypothesis: the set, with values.
@@ -42,25 +41,9 @@ def log_prior(
     Returns:
         The log probability, up to a constant [nat].
     """
-    own = rules.cause
-    found, place = 0.0, 0
-    acting: set[tuple[str, bool]] = set()
-    rubbing: set[tuple[str, bool]] = set()
+    names = [candidate.name for candidate in hypothesis.candidates]
+    found, place = log_chance(names, evidence, rules, count), 0
     for one in hypothesis.candidates:
-        kind, at = (one.effect, one.standing), (one.location, one.standing)
-        changed = bool(evidence.references) and not one.standing
-        chance = own.changed if changed else own.probability
-        places = count[one.effect] + (count[one.effect] > 1)
-        if one.effect in FRICTION and at in rubbing:
-            chance *= own.again / (len(FRICTION) - 1)
-        elif kind in acting:
-            chance *= own.again / places
-        else:
-            chance *= (1 - own.again if acting else 1.0) / (len(count) * places)
-        acting.add(kind)
-        if one.effect in FRICTION:
-            rubbing.add(at)
-        found += float(np.log(chance))
         odds = []
         for cause in one.causes:
             values = hypothesis.values(place)
@@ -74,6 +57,44 @@ def log_prior(
         if one.location == EVERYWHERE:
             found += _one_way(one, hypothesis, place, rules)
     return found
+
+
+def log_chance(
+    names: Sequence[Name], evidence: Evidence, rules: InferenceRules, count: Mapping[str, int]
+) -> float:
+    """Compute the log prior probability that some effects act at their places, of whatever sizes.
+
+    Each effect is as likely as any other, at each of its places, or at all of them. Likelier are an
+    effect that acts at another place already, and friction of another kind where a joint has some
+    already, which is no further change.
+
+    Args:
+        names: effects, places and whether they stand in all logs, in the order of the effects.
+        evidence: channels.
+        rules: of the inference.
+        count: places of each effect that is tried.
+
+    Returns:
+        The log probability [nat].
+    """
+    own, total = rules.cause, 0.0
+    acting: set[tuple[str, bool]] = set()
+    rubbing: set[tuple[str, bool]] = set()
+    for effect, location, standing in names:
+        changed = bool(evidence.references) and not standing
+        chance = own.changed if changed else own.probability
+        places = count[effect] + (count[effect] > 1)
+        if effect in FRICTION and (location, standing) in rubbing:
+            chance = own.again / (len(FRICTION) - 1)
+        elif (effect, standing) in acting:
+            chance *= own.again / places
+        else:
+            chance *= (1 - own.again if acting else 1.0) / (len(count) * places)
+        acting.add((effect, standing))
+        if effect in FRICTION:
+            rubbing.add((location, standing))
+        total += float(np.log(chance))
+    return total
 
 
 def _one_way(

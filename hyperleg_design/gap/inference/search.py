@@ -13,6 +13,7 @@ from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
+from hyperleg_design.gap.inference.cause_prior import log_chance
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.endogenous import Factor
@@ -59,9 +60,10 @@ class Search:
         self.promises = Promises(evidence, rules, self.traces, threads)
         self.fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.fits.nothing}
         """By the names of their candidates."""
-        self._short: dict[Name, tuple[float, float]] = {}
-        """Of causes that were worse than none when they were fitted last: the promise that would
-        have been enough, and the score of the hypothesis beside which they were fitted [nat]."""
+        self._short: dict[tuple[Name, ...], tuple[float, float]] = {}
+        """Of causes that were worse than none when they were fitted last beside others at their
+        place: the promise that would have been enough, and the score of the hypothesis beside
+        which they were fitted [nat]."""
 
     def result(self) -> Result:
         """Search forward until no further cause is worth its prior, drop what is not, and put
@@ -128,9 +130,15 @@ class Search:
         if len(rest) == len(current.candidates):
             return current
         best = self._known(rest) or self.fits.fit(rest, current.scales)
-        while (more := self._better(self.further(best, flexible=False), best)) is not best:
+        while True:
+            tried = self.further(best, flexible=False)
+            more = self._better(tried, best)
+            if more is best and tried:  # two causes may gain only beside one another
+                likeliest = max(tried, key=lambda any_: any_.score)
+                more = self._better(self.further(likeliest, flexible=False), best)
+            if more is best:
+                return max(current, best, key=lambda any_: any_.score)
             best = more
-        return max(current, best, key=lambda any_: any_.score)
 
     def _fewer(self, current: Hypothesis) -> list[Hypothesis]:
         """A hypothesis without each of its candidates."""
@@ -203,8 +211,19 @@ class Search:
         """
         if self._known((*current.candidates, promises[0])) is not None:
             return True
-        enough, score = self._short.get(promises[0].name, (-np.inf, 0.0))
-        return promises[0].gain + max(current.score - score, 0.0) > enough
+        enough, score = self._short.get(_at_place(promises[0], current), (-np.inf, 0.0))
+        return self._promised(promises[0], current) + max(current.score - score, 0.0) > enough
+
+    def _promised(self, promise: Promise, current: Hypothesis) -> float:
+        """What a cause promises beside those of a hypothesis, with the chance that it acts there
+        beside them [nat].
+        """
+        names = [candidate.name for candidate in current.candidates]
+        chances = [
+            log_chance(some, self.evidence, self.rules, self.count)
+            for some in (names, sorted([*names, promise.name]))
+        ]
+        return promise.gain + chances[1] - chances[0]
 
     def best_of(self, promises: Sequence[Promise], current: Hypothesis) -> Hypothesis | None:
         """Fit an effect at a place beside a hypothesis from several starts.
@@ -229,10 +248,10 @@ class Search:
             self.fits.fit((*current.candidates, one), current.scales) for one in apart
         ]
         best = max(fits_of_starts, key=lambda one: one.score, default=None)
-        self._short.pop(promises[0].name, None)
+        self._short.pop(_at_place(promises[0], current), None)
         if best is not None and best.score < current.score:
-            enough = promises[0].gain + current.score - best.score
-            self._short[promises[0].name] = enough, current.score
+            enough = self._promised(promises[0], current) + current.score - best.score
+            self._short[_at_place(promises[0], current)] = enough, current.score
         return best
 
     def everywhere(
@@ -271,6 +290,11 @@ class Search:
         stack = Stack.of(causes, self.evidence.weight)
         crossing = Crossing.of(self.evidence.channels, stack.rows)
         return self.fits.at_scales(stack, crossing, scales).gain
+
+
+def _at_place(promise: Promise, current: Hypothesis) -> tuple[Name, ...]:
+    """Name of a cause, and those of a hypothesis at the same place."""
+    return promise.name, *(name for name in current.names if name[1] == promise.location)
 
 
 def _alike(one: Candidate, other: Candidate) -> bool:

@@ -12,6 +12,7 @@ from hyperleg_design.gap.inference.cause_prior import (
     MISSING,
     PER_PARAMETER,
     beyond_usual,
+    log_chance,
     log_prior,
     prior_odds,
     usual_error,
@@ -157,3 +158,19 @@ def test_friction_that_is_described_is_not_gone():
     assert little - most == pytest.approx(MISSING)
     bare = cause("coulomb_friction", low=np.array([0.0]))
     assert prior_odds(bare, np.array([0.5])) == pytest.approx(little)
+
+
+@pytest.mark.parametrize("references", [(), (None,)])
+def test_friction_of_another_kind_where_a_joint_rubs_more_is_no_further_change(references):
+    evidence = SimpleNamespace(references=references)
+    count = dict.fromkeys(("coulomb_friction", "stribeck_friction", "viscous_friction"), 3)
+
+    def more(*names):
+        names = [("coulomb_friction", "knee", False), *names]
+        chances = [log_chance(some, evidence, RULES, count) for some in (names, names[:1])]
+        return chances[0] - chances[1]
+
+    here = more(("viscous_friction", "knee", False))
+    assert here == pytest.approx(np.log(RULES.cause.again / 3))
+    assert more(("viscous_friction", "hip", False)) < here - 1
+    assert more(("viscous_friction", "knee", True)) < here - 1

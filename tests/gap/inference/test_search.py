@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations
+from types import SimpleNamespace
 
 import diagnosed
 import numpy as np
@@ -135,3 +136,30 @@ def test_causes_that_act_together_are_looked_for_behind_a_torque_of_any_shape(ro
     listed = search._listed(search.fits.fit([torque], search.fits.nothing.scales))
     assert {effect for effect, *_ in listed.names} == set(effects[:2])
     assert search._listed(listed) is listed
+
+
+def test_two_causes_that_gain_only_beside_one_another_are_looked_for_together(search, result):
+    best = result.best
+    looked = Search.__new__(Search)
+    vars(looked).update(vars(search))
+
+    def further(current, flexible=True):
+        assert not flexible
+        later = {best.names: [one], one.names: [both]}
+        return later.get(current.names, [])
+
+    def scored(hypothesis, more, gain):
+        cause = SimpleNamespace(standing=False)
+        candidates = (*hypothesis.candidates, Candidate(more, "hip", (cause,)))
+        evidence = hypothesis.log_evidence + gain
+        return replace(hypothesis, candidates=candidates, log_evidence=evidence)
+
+    one = scored(best, "coulomb_friction", -1.0)
+    both = scored(one, "viscous_friction", 3.0)
+    current = scored(best, "odd_torque", 1.0)
+    looked.further, looked._known = further, lambda _: best
+    looked.fits = SimpleNamespace(settled=lambda hypothesis: hypothesis)
+    looked.fitted = {}
+    assert looked._listed(current) is both
+    both = scored(one, "viscous_friction", 1.5)
+    assert looked._listed(current) is current
