@@ -24,9 +24,8 @@ KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 RESIDUALS = ("motion", "drive", "control", "base", "ground")
 """Residuals in which a trace can stand; `Signals` says what each compares."""
 LOGGED, NEEDED, STEERED = NUISANCE_TORQUES = ("logged", "needed", "steered")
-"""Torques that a trace of a nuisance parameter rests on: those of the log; those that the motion
-needs; the log's with targets by which controllers ask for what the motion needs, where nobody
-measured torques."""
+"""Torques that a trace of a nuisance parameter rests on: the log's; those that the motion needs; or
+the log's with targets by which controllers ask for those, where nobody measured torques."""
 
 PROPER = {"coulomb": "Coulomb", "stribeck": "Stribeck", "imu": "IMU"}
 """Words of identifiers that have a spelling of their own."""
@@ -61,9 +60,8 @@ class Effect(ABC):
     """Whether the catalogue has it, so that answers name it as a cause. One that it lacks competes
     with those that it has; where it wins, something unlisted acts, which `describe` tells."""
     flexible: ClassVar[bool] = False
-    """Whether it is no effect of the catalogue but a function of many shapes, each of whose sizes
-    shrinks to nothing. It competes in the logs under test alone, as reference logs tell by
-    themselves what stands, and pays for no parameter beside what the marginal likelihood takes."""
+    """Whether it is no effect of the catalogue but a function of many shapes whose sizes shrink to
+    nothing. It acts under test alone, and pays for no parameter beside the marginal likelihood."""
     rare: ClassVar[float] = 0.0
     """Log prior odds over those of an effect that looks like it, of one that is rarer [nat]."""
     driver: ClassVar[str] = ""
@@ -76,10 +74,12 @@ class Effect(ABC):
     """Standard deviation over the value, of parameters that follow from a trace at first order."""
     stretched: ClassVar[bool] = False
     """Whether a load, with all of its noise, shapes the trace; the first parameter sizes it."""
+    lags: ClassVar[bool] = False
+    """Whether torques lag behind what is asked for; the first parameter is the time constant."""
     scales: ClassVar[str] = ""
     """`motor` or `joint` where it scales a torque that the residual of motion trusts."""
     holds_back: ClassVar[bool] = False
-    """Whether a part of what controllers ask for does not arrive, such as beyond a limit."""
+    """Whether a part of what controllers ask for does not arrive, as beyond a limit."""
     scales_measured: ClassVar[bool] = True
     """Whether it scales torque that is measured, too, not only what a controller asks for."""
     told_apart: ClassVar[Mapping[str, Set[str]]] = {}

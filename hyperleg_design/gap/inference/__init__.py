@@ -11,7 +11,7 @@ In the order in which a diagnosis passes them:
 | how do logs become channels? | `assembly` |
 | which residual does an effect leave at a place, linearised? | `screen`, `cause` |
 | ... beside other causes that change what it acts on? | `interactions` |
-| what keeps a cause from scaling noise away? | `endogenous` (torques), `shrinking` (belts) |
+| what keeps a cause from scaling noise away? | `endogenous` (torques), `shrinking` (belts), `smoothing` (slow drives) |
 | how probable is a set of causes before any log? | `cause_prior` |
 | how large are the causes of a set, and what is its evidence? | `hypothesis`, `hypothesis_fit`, `bounded_least_squares` |
 | which sets are tried? | `promises` (what is worth a fit), `search` |

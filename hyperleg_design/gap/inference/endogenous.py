@@ -23,6 +23,7 @@ from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.placing import is_measured, motor_strength
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.inference.shrinking import Shrinking, shrinking
+from hyperleg_design.gap.inference.smoothing import smoothing
 from hyperleg_design.gap.signals.signals import Signals
 
 FAINT = 0.5
@@ -137,8 +138,10 @@ def factors_of(
     """
     subject = samples.filtered_logs[0].signals.subject
     scaling = WEIGHED[effect]
-    if values is not None and (noise := shrinking(samples, scaling, location, usual, values)):
-        return (noise,)
+    if values is not None:
+        for term in (shrinking, smoothing):
+            if (noise := term(samples, scaling, location, usual, values)) is not None:
+                return (noise,)
     if values is not None and scaling.holds_back:
         return held_back(samples, scaling, location, values)
     if scaling.scales == "motor":

@@ -62,6 +62,7 @@ class ActuatorBandwidth(MotorEffect):
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("time_constant", "s", 0.0, 0.0, 0.1, 0.005, SOURCE),
     )
+    lags: ClassVar[bool] = True
     hooks: ClassVar[type[MotorHooks]] = _Lagging
     needs: ClassVar[Need] = Need(
         lambda motion: motion.command > BANDWIDTH,

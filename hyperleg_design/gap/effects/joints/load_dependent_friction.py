@@ -19,7 +19,10 @@ from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
 from hyperleg_design.simulation.alteration import Alteration
 
-SOURCE = "20-31 % of the motor's torque on small servos, 4-5 % on good gears (BAM)"
+SOURCE = (
+    "20-31 % of the motor's torque on small servos, 4-5 % on good gears (BAM); gears that lose "
+    "more than half of it cannot be driven back"
+)
 
 
 class LoadDependentFriction(JointTorque):
@@ -36,7 +39,7 @@ class LoadDependentFriction(JointTorque):
     nuisance_rank: ClassVar[int] = 3
     summary: ClassVar[str] = "a joint resists motion with a share of the torque that it transmits"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("coefficient", "", 0.0, 0.0, 0.8, 0.1, SOURCE, spread=0.006),
+        Parameter("coefficient", "", 0.0, 0.0, 0.5, 0.1, SOURCE, spread=0.006),
     )
     linear: ClassVar[bool] = True
     needs: ClassVar[Need] = Need(
