@@ -1,8 +1,8 @@
 """Shapes of what a robot's model leaves of each residual channel: functions of its own state.
 
-No shape holds a measured torque, which would take every change of the robot along. Outside of the
-states that reference logs reached, shapes keep their prior deviation, so that the predictive
-variance grows there.
+No shape holds what its residual is made of, a measured torque or the logged command of a control,
+which would take every change of the robot along. Outside of the states that reference logs reached,
+shapes keep their prior deviation, so that the predictive variance grows there.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ NEIGHBOURS = 2
 SEED = 7
 """Of the random features, which are the same for every robot."""
 MOTORS = ("drive", "control")
-"""Residuals of motor torques, whose shapes are functions of the motor's command and speed."""
+"""Residuals of motor torques, whose shapes are functions of what the motor is asked for and of its
+speed."""
 
 
 def shapes(signals: Signals, residual: str, column: int, waves: int) -> np.ndarray:
@@ -38,7 +39,7 @@ def shapes(signals: Signals, residual: str, column: int, waves: int) -> np.ndarr
     if residual == "motion":
         named, state = _of_joint(signals, column)
     elif residual in MOTORS and signals.command is not None:
-        named, state = _of_motor(signals, column)
+        named, state = _of_motor(signals, column, load(signals, residual, column))
     else:
         named = [np.ones(len(signals.time)), *signals.velocity.T[: NEIGHBOURS + 1]]
         return np.nan_to_num(np.array(named))
@@ -64,7 +65,8 @@ def load(signals: Signals, residual: str, column: int) -> np.ndarray:
     if residual == "motion":
         return np.asarray(signals.rigid[:, column])
     if residual in MOTORS and signals.command is not None:
-        return np.asarray(signals.command[:, column])
+        asked = signals.command[:, column]
+        return asked if residual == "drive" else asked - signals.residual["control"][:, column]
     if residual == "transmission":
         return np.asarray((signals.velocity @ signals.subject.joint_from_motor)[:, column])
     return np.asarray(signals.residual[residual][:, column])
@@ -94,9 +96,9 @@ def _of_joint(signals: Signals, joint: int) -> tuple[list[np.ndarray], np.ndarra
     return named, np.stack(state, -1)
 
 
-def _of_motor(signals: Signals, motor: int) -> tuple[list[np.ndarray], np.ndarray]:
-    assert signals.command is not None
-    command = signals.command[:, motor]
+def _of_motor(
+    signals: Signals, motor: int, command: np.ndarray
+) -> tuple[list[np.ndarray], np.ndarray]:
     speed = signals.velocity @ signals.subject.joint_from_motor[:, motor]
     way = np.sign(speed)
     named = [np.ones_like(command), command, command * np.abs(command)]

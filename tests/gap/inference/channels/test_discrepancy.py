@@ -28,3 +28,17 @@ def test_friction_of_a_joint_is_among_its_shapes(signals):
 
     way = sliding(signals)[:, 1]
     assert any(np.allclose(one, way) for one in shapes(signals, "motion", 1, 0))
+
+
+def test_no_shape_of_the_control_holds_the_logged_command(signals):
+    asked = 3 * np.sin(signals.time)[:, None] * np.ones(signals.believed.shape[1])
+
+    def shown(command):
+        residual = {**signals.residual, "control": command - asked}
+        other = replace(signals, command=command, residual=residual)
+        return shapes(other, "control", 0, 12), load(other, "control", 0)
+
+    before, own = shown(asked)
+    np.testing.assert_array_equal(own, asked[:, 0])
+    for part, expected in zip(shown(0.7 * asked + 1.0), (before, own), strict=True):
+        np.testing.assert_allclose(part, expected, atol=1e-9)
