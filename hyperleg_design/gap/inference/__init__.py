@@ -5,7 +5,7 @@ In the order in which a diagnosis passes them:
 | question | module |
 |---|---|
 | which numbers are the data, and how much does each count? | `samples` |
-| how large is the noise of each? | `noise_model` |
+| how large is the noise of each? | `noise_model`, `white_noise` |
 | what is usually a little wrong of every robot, and which residual does it leave? | `nuisance`, `nuisance_traces` |
 | how likely is one residual channel: noise, discrepancy, and their scales? | `channels/` |
 | how do logs become channels? | `assembly` |

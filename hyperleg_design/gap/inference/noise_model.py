@@ -15,6 +15,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects.placing import joint_strength
 from hyperleg_design.gap.inference.rules import NoiseRules
+from hyperleg_design.gap.inference.white_noise import white_density
 from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.channels import applied
@@ -73,7 +74,7 @@ def _row(
         filtered_log,
         row,
         residual,
-        _white(residual, filtered_log.mask[row], one.cutoff, signals.step),
+        white_density(residual, filtered_log.mask[row], one.cutoff, signals.step),
     )
     samples = filtered_log.sample(row, np.nan_to_num(moving)[None])[0]
     level, _, _ = filtered_log.labels(row)
@@ -165,30 +166,6 @@ def _strength(filtered_log: FilteredLog, row: int) -> float:
         return fastest if np.isfinite(fastest) else FAST
     limit = float(subject.torque_limit[one.column])
     return limit if np.isfinite(limit) else 1.0
-
-
-def _white(residual: np.ndarray, mask: np.ndarray, cutoff: float, step: float) -> float:
-    """One-sided density of a residual above its cutoff, by the median, which lines and leaks do not
-    move [unit^2/Hz].
-    """
-    known = np.flatnonzero(mask)
-    if len(known) < 64:
-        return 0.0
-    # second differences take out what is slow, so that none of it leaks
-    third = np.diff(np.interp(np.arange(known[0], known[-1] + 1), known, residual[known]), 3)
-    power = np.abs(np.fft.rfft(third * np.hanning(len(third)))) ** 2
-    frequency = np.fft.rfftfreq(len(third), step)
-    # interpolation onto even ticks takes noise away near the Nyquist frequency
-    first = min(1.3 * cutoff, 0.3 / step)
-    high = (frequency > first) & (frequency < min(2 * first, 0.45 / step))
-    if high.sum() < 8:
-        return 0.0
-    passed = (2 * np.sin(np.pi * frequency[high] * step)) ** 6
-    passed = passed * (
-        1 - (1 - np.cos(2 * np.pi * frequency[high] * step)) / 3
-    )  # mean of linear interpolation at any place
-    density = np.median(power[high] / passed) / np.log(2)
-    return float(2 * step * density / np.sum(np.hanning(len(third)) ** 2))
 
 
 def _capped(filtered_log: FilteredLog, row: int, residual: np.ndarray, white: float) -> np.ndarray:
@@ -301,7 +278,7 @@ def of_load(filtered_log: FilteredLog, row: int) -> np.ndarray:
         for values in (signals.residual[channel.residual_name], signals.rigid)
     )
     own, its, both = (
-        _white(values, mask, channel.cutoff, signals.step)
+        white_density(values, mask, channel.cutoff, signals.step)
         for values in (residual, needed, residual + needed)
     )
     if own <= 0 or not filtered_log.bands[row]:

@@ -18,6 +18,7 @@ from hyperleg_design.gap.effects import UNLISTED, WEIGHED
 from hyperleg_design.gap.experiments import experiment
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
+from hyperleg_design.gap.inference.detectors.ringing import ringing
 from hyperleg_design.gap.inference.gap_size import GapSize
 from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
 from hyperleg_design.gap.inference.intervals import intervals
@@ -93,7 +94,7 @@ class Answer:
         )
         return Diagnosis(
             verdict="unknown"
-            if posterior.verdict == "none" and self.cycling
+            if posterior.verdict == "none" and (self.cycling or self.ringing)
             else posterior.verdict,
             gap=self.gap(naming),
             where=self.where(),
@@ -287,6 +288,14 @@ class Answer:
             frequencies |= {joint: f for joint, f in _cycles(one).items() if joint not in before}
         return frequencies
 
+    @cached_property
+    def ringing(self) -> dict[str, float]:
+        """Joints that ring and are in no limit cycle, see `ringing`."""
+        logs = self.evidence.samples.filtered_logs
+        count = len(self.evidence.signals)
+        over = ringing(logs[:count], logs[count:])
+        return {joint: times for joint, times in over.items() if joint not in self.cycling}
+
     def shape(self) -> tuple[dict[str, Any], ...]:
         """Channels in which something unlisted acts."""
         left = np.maximum(self.size.after - self.size.noise, 0.0)
@@ -298,6 +307,13 @@ class Answer:
                 f"stability"
             )
             shapes.append(residual_shape("limit cycle", joint, text, 0.0))
+        for joint, times in self.ringing.items():
+            text = (
+                f"is {times:.0f} times as large above the frequencies of its motion as in the "
+                f"references, and faults are lost in it: play that knocks, a loose part, or a "
+                f"control loop on the edge of stability"
+            )
+            shapes.append(residual_shape("ringing", joint, text, 0.0))
         remainder = self.posterior.remainder
         for cause, text in self.odd():
             if not cause.standing:

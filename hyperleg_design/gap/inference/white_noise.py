@@ -1,0 +1,38 @@
+"""White noise of a residual, read off above the frequencies of the motion."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def white_density(residual: np.ndarray, mask: np.ndarray, cutoff: float, step: float) -> float:
+    """Estimate the density of a residual above its cutoff, by the median, which lines and leaks do
+    not move.
+
+    Args:
+        residual: one row, unknown ticks zero `(t,)` [unit].
+        mask: known ticks `(t,)`.
+        cutoff: frequency above which the row holds noise only [Hz].
+        step: of the ticks [s].
+
+    Returns:
+        One-sided density [unit^2/Hz]; 0 where too little is known.
+    """
+    known = np.flatnonzero(mask)
+    if len(known) < 64:
+        return 0.0
+    # second differences take out what is slow, so that none of it leaks
+    third = np.diff(np.interp(np.arange(known[0], known[-1] + 1), known, residual[known]), 3)
+    power = np.abs(np.fft.rfft(third * np.hanning(len(third)))) ** 2
+    frequency = np.fft.rfftfreq(len(third), step)
+    # interpolation onto even ticks takes noise away near the Nyquist frequency
+    first = min(1.3 * cutoff, 0.3 / step)
+    high = (frequency > first) & (frequency < min(2 * first, 0.45 / step))
+    if high.sum() < 8:
+        return 0.0
+    passed = (2 * np.sin(np.pi * frequency[high] * step)) ** 6
+    passed = passed * (
+        1 - (1 - np.cos(2 * np.pi * frequency[high] * step)) / 3
+    )  # mean of linear interpolation at any place
+    density = np.median(power[high] / passed) / np.log(2)
+    return float(2 * step * density / np.sum(np.hanning(len(third)) ** 2))
