@@ -17,13 +17,15 @@ OTHERWISE = 0.1
 (assumed)."""
 FEWEST = 100
 """Samples that it takes to tell."""
+HELD = 1e-3
+"""Distance from a motor's limit, over the limit, within which a command is held there [-]."""
 
 
 def control_residual(
     subject: Subject, logged: np.ndarray, spring: np.ndarray, damper: np.ndarray
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Logged command minus the one that the declared gains make `(s, m)` [Nm], NaN where nothing is
-    said.
+    said, as where a command is held at the motor's limit.
 
     Args:
         subject: the robot, with the declared gains; m motors, n joints.
@@ -41,7 +43,9 @@ def control_residual(
         terms = np.concatenate([spring[:, joints], damper[:, joints]], 1) * np.tile(
             share[joints], 2
         )
-        known = np.isfinite(logged[:, motor]) & np.isfinite(terms).all(1)
+        limit = float(subject.torque_limit[motor])
+        held = np.abs(np.abs(logged[:, motor]) - limit) < HELD * limit
+        known = np.isfinite(logged[:, motor]) & np.isfinite(terms).all(1) & ~held
         if known.sum() < FEWEST or not terms[known].any():
             continue
         centred = terms[known] - terms[known].mean(0)

@@ -6,7 +6,11 @@ from hyperleg_design.gap.signals.control import control_residual
 
 RNG = np.random.default_rng(0)
 M = np.array([[6.0, 6.0], [-4.0, 4.0]])
-SUBJECT = SimpleNamespace(motors=("front", "back"), motor_from_joint=np.linalg.inv(M))
+SUBJECT = SimpleNamespace(
+    motors=("front", "back"),
+    motor_from_joint=np.linalg.inv(M),
+    torque_limit=np.full(2, np.inf),
+)
 SPRING, DAMPER = RNG.normal(size=(2, 500, 2))
 
 
@@ -24,6 +28,18 @@ def test_other_gains_leave_their_difference():
         found, (-0.2 * SPRING + 0.3 * DAMPER) @ SUBJECT.motor_from_joint.T, atol=1e-12
     )
     assert others == ()
+
+
+def test_commands_that_a_limit_holds_say_nothing_of_gains():
+    limit = np.array([0.25, np.inf])
+    subject = SimpleNamespace(**{**vars(SUBJECT), "torque_limit": limit})
+    asked = 1.6 * (SPRING + DAMPER) @ SUBJECT.motor_from_joint.T
+    held = np.abs(asked[:, 0]) > limit[0]
+    assert 0.1 < held.mean() < 0.7
+    found, others = control_residual(subject, np.clip(asked, -limit, limit), SPRING, DAMPER)
+    assert others == ()
+    np.testing.assert_array_equal(np.isnan(found[:, 0]), held)
+    np.testing.assert_allclose(found, np.where(np.isnan(found), np.nan, 0.6 / 1.6 * asked))
 
 
 def test_of_controllers_of_another_form_nothing_is_said():
