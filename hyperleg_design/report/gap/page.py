@@ -42,7 +42,8 @@ MOST_TRACES = 2
 """Logs that are drawn."""
 SENSITIVITY = (
     "How small a fault could have been and still been named, nine times in ten, beside the "
-    "calibration errors that robots usually have. What is smaller these logs do not show; more "
+    "calibration errors that robots usually have and the noise that is left with the named causes "
+    "added. What is smaller these logs do not show; more "
     "excitation, longer logs or reference logs make it less."
 )
 HIDDEN = " The gap that no effect explains hides more."
@@ -220,11 +221,10 @@ def _rows(shown: Sequence[Evidence], explained: bool) -> Details | None:
         root_mean_square(np.concatenate(part))
         for part in ([s.before for s in alike], [s.after for s in alike])
     )
-    unit = gap_figures.AXIS.get(shown[0].residual_name, gap_figures.TORQUE)
-    header = ["", f"before, {unit}", *([f"after, {unit}"] if explained else [])]
+    header = ["", "before", *(["after"] if explained else [])]
     rows = [
-        [name, f"{b:.3g}", *([f"{a:.3g}"] if explained else [])]
-        for name, b, a in zip(alike[0].rows, before, after, strict=True)
+        [name, f"{b:.3g} {unit}", *([f"{a:.3g} {unit}"] if explained else [])]
+        for name, unit, b, a in zip(alike[0].rows, alike[0].units, before, after, strict=True)
         if np.isfinite(b)
     ]
     return Details("Root mean square of each row", [Table(header, rows)]) if rows else None

@@ -108,15 +108,17 @@ def gap_text(gap: Gap, most: int = 12) -> str:
     lines += [f"note: {note}" for note in gap.notes]
     for signal in dict.fromkeys(row.signal for row in gap.rows):
         rows = sorted(gap.select(signal), key=lambda row: -row.excess)
+        units = sorted({row.unit for row in rows})
+        mixed = len(units) > 1
         lines += [
             "",
-            f"{signal} [{rows[0].unit}]",
+            f"{signal} [{', '.join(units)}]",
             f"  {'place':<24} {'gap':>10} {'noise':>10} {'excess':>10} {'share':>7}",
         ]
         titles = _titles([{"location": row.location, "kind": row.kind} for row in rows])
         lines += [
             f"  {titles[row.kind, row.location]:<24} {row.gap:>10.4g} {row.floor:>10.4g} "
-            f"{row.excess:>10.4g} {100 * row.share:>6.0f}%"
+            f"{row.excess:>10.4g} {100 * row.share:>6.0f}%{f'  {row.unit}' if mixed else ''}"
             for row in rows[:most]
         ]
         if len(rows) > most:
@@ -169,14 +171,15 @@ def sensitivity_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str, str, 
         diagnosis: as `diagnosis.json` holds it.
 
     Returns:
-        For each parameter of each effect: effect, parameter, where the change is least and where it
-        is most.
+        For each parameter of each effect, and each unit that it has: effect, parameter, where the
+        change is least and where it is most.
     """
-    groups: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+    groups: dict[tuple[str, str, str], list[Mapping[str, Any]]] = {}
     for entry in diagnosis.get("sensitivity", ()):
-        groups.setdefault((str(entry["effect"]), str(entry["parameter"])), []).append(entry)
+        key = str(entry["effect"]), str(entry["parameter"]), str(entry["unit"])
+        groups.setdefault(key, []).append(entry)
     rows = []
-    for (effect, parameter), members in groups.items():
+    for (effect, parameter, _), members in groups.items():
         ordered = sorted(members, key=lambda entry: float(entry["change"]))
         least, most = (
             f"{change_text(entry)} at {entry['location']}" for entry in (ordered[0], ordered[-1])
@@ -322,11 +325,17 @@ def replayed_text(rows: Sequence[Replayed]) -> str:
     if not rows:
         return ""
     wide = max(len(r.joint) for r in rows)
+    units = list(dict.fromkeys(f"m{r.unit}" for r in rows))
+    mixed = len(units) > 1
     lines = [
         f"replayed over {rows[0].windows} short windows, following each log's {rows[0].follows}; "
-        f"error of position [mrad]:"
+        f"error of position [{', '.join(units)}]:"
     ]
-    lines += [f"  {r.joint:{wide}}  {1e3 * r.before:8.3g} -> {1e3 * r.after:8.3g}" for r in rows]
+    lines += [
+        f"  {r.joint:{wide}}  {1e3 * r.before:8.3g} -> {1e3 * r.after:8.3g}"
+        f"{f' m{r.unit}' if mixed else ''}"
+        for r in rows
+    ]
     return "\n".join(lines)
 
 
