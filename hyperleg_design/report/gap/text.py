@@ -8,7 +8,6 @@ from typing import Any
 from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.checks.coverage import REMEDY
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.logs.columns import unit
 from hyperleg_design.gap.logs.sampling import Column
 from hyperleg_design.gap.pipeline.detected_causes import APART
 from hyperleg_design.gap.playback.added import Changed, Replayed
@@ -71,26 +70,38 @@ def _places(where: tuple[str, ...]) -> str:
 
 
 def _signals(columns: Sequence[Column]) -> list[str]:
-    """One line a kind of signal: how many, rate, quantisation, noise, saturation, the worst of its
-    columns.
+    """One line a kind of signal: how many, the lowest rate, ranges of quantisation and noise, the
+    longest saturation.
     """
     kinds: dict[str, list[Column]] = {}
     for column in columns:
         kinds.setdefault(column.column.partition("/")[0], []).append(column)
     lines = []
     for kind, members in kinds.items():
-        quantum, units = max(c.quantum for c in members), [unit(c.column) for c in members]
+        steps = _ranges([(c.quantum, c.unit) for c in members if c.quantum])
         parts = [
             f"{kind} ({len(members)})",
             f"{min(c.rate for c in members):.4g} Hz",
-            f"steps of {quantum:.2g} {units[0]}".rstrip() if quantum else "",
-            f"noise {max(c.noise for c in members):.2g} {units[0]}".rstrip(),
-            f"at a bound {100 * max(c.saturated for c in members):.2g} %"
+            f"steps of {steps}" if steps else "",
+            f"noise {_ranges([(c.noise, c.unit) for c in members])}",
+            f"at a bound up to {100 * max(c.saturated for c in members):.2g} %"
             if max(c.saturated for c in members) > 0.005
             else "",
         ]
         lines.append(", ".join(part for part in parts if part))
     return lines
+
+
+def _ranges(sizes: Sequence[tuple[float, str]]) -> str:
+    """Sizes from the least to the largest, in each unit: `5e-06 m and 0.0002 .. 0.0004 rad`."""
+    by_unit: dict[str, list[float]] = {}
+    for size, unit in sizes:
+        by_unit.setdefault(unit, []).append(size)
+    texts = []
+    for unit, values in by_unit.items():
+        ends = dict.fromkeys(f"{end:.2g}" for end in (min(values), max(values)))
+        texts.append(f"{' .. '.join(ends)} {unit}".rstrip())
+    return " and ".join(texts)
 
 
 def gap_text(gap: Gap, most: int = 12) -> str:

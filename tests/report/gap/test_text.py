@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 
 from hyperleg_design.gap.checks.check import check_log
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.logs.sampling import Column
 from hyperleg_design.report.gap.text import checks_text, diagnosis_text
 
 
@@ -28,6 +31,20 @@ def test_what_a_log_can_and_cannot_show():
     assert "  cannot  imu_bias: no gyroscope and no accelerometer" in lines
     assert lines[-1] == "  fit for a diagnosis"
     assert len([line for line in lines if line.startswith(("  shows", "  cannot"))]) == 24
+
+
+def test_signals_of_unlike_joints_have_ranges_in_each_unit():
+    sizes = ((5e-6, "m"), (2e-4, "rad"), (4e-4, "rad"), (0.0, "rad"))
+    columns = [
+        Column(f"position/{i}", 200.0, 0.0, -1.0, 1.0, step, 2 * step + 1e-7, 0.0, False, 1, unit)
+        for i, (step, unit) in enumerate(sizes)
+    ]
+    check = replace(check_log(log()), columns=tuple(columns))
+    (line,) = (one for one in checks_text([check]).splitlines() if one.startswith("  signals"))
+    assert line == (
+        "  signals position (4), 200 Hz, steps of 5e-06 m and 0.0002 .. 0.0004 rad, "
+        "noise 1e-05 m and 1e-07 .. 0.0008 rad"
+    )
 
 
 def test_errors_and_remarks():
