@@ -13,7 +13,7 @@ import numpy as np
 
 from hyperleg_design.gap.model.joint_units import joint_unit
 from hyperleg_design.gap.playback.show import Shown
-from hyperleg_design.report.gap.text import chosen
+from hyperleg_design.report.gap.choices import chosen
 from hyperleg_design.report.style import figure_style, save
 
 TRACE, RESIDUAL, BEFORE, TARGET = "#c8602a", "#9ca3af", "#2f6db3", "#6b7280"

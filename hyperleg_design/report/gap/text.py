@@ -7,11 +7,11 @@ from typing import Any
 
 from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.checks.coverage import REMEDY
-from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.logs.sampling import Column
 from hyperleg_design.gap.pipeline.detected_causes import APART
 from hyperleg_design.gap.playback.added import Changed, Replayed
 from hyperleg_design.gap.playback.measure import Gap
+from hyperleg_design.report.gap.alike import places, span_text, spans, together
 
 NOISE_FROM = {
     "reference": "reference logs",
@@ -149,32 +149,6 @@ def gap_text(gap: Gap, most: int = 12) -> str:
     return "\n".join(lines)
 
 
-def chosen(
-    effect: str, parameters: Mapping[str, Mapping[str, Any]]
-) -> list[tuple[str, Mapping[str, Any], str]]:
-    """List parameters by name, with words for those that are a choice.
-
-    Args:
-        effect: its identifier.
-        parameters: values by name, as `diagnosis.json` holds them.
-
-    Returns:
-        Name, value and words of each parameter; the words are empty for a number.
-    """
-    choices = {p.name: p.choices for p in EFFECTS[effect].parameters}
-    rows = []
-    for name, value in parameters.items():
-        words = choices.get(name, ())
-        rows.append(
-            (
-                name,
-                value,
-                words[min(max(round(float(value["value"])), 0), len(words) - 1)] if words else "",
-            )
-        )
-    return rows
-
-
 def sensitivity_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
     """Tabulate the smallest changes that the logs would have shown.
 
@@ -244,19 +218,9 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
         ("model lacks", lacks),
     )
     for title, rows in groups:
-        for row in rows:
-            words = ", ".join(
-                choice
-                or f"{n} {p['value']:.4g} {p['unit']} ({p['low']:.4g} .. {p['high']:.4g})".replace(
-                    "  ", " "
-                )
-                for n, p, choice in chosen(row["effect"], row["parameters"])
-            )
-            closes = f", closes {100 * row['closed']:.0f} %" if title == "cause" else ""
-            lines.append(
-                f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}"
-                f"{closes}; {words}"
-            )
+        collapsed = together(rows) if title != "rival" else [[row] for row in rows]
+        for group in collapsed:
+            lines += _cause_lines(title, group)
     if remainder := diagnosis.get("remainder"):
         lines.append(f"  remainder: {100 * remainder:.0f} % of the gap, which no effect explains")
     lines += [
@@ -285,6 +249,32 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     if diagnosis["separating_experiment"]:
         lines.append(f"  to tell them apart: {_experiment(diagnosis['separating_experiment'])}")
     return "\n".join(lines)
+
+
+def _cause_lines(title: str, group: Sequence[Mapping[str, Any]]) -> list[str]:
+    """One line for a cause, or for an effect at several places, and their names where the line only
+    counts them.
+    """
+    words = ", ".join(
+        span.words
+        or f"{span.name} {span_text(span.least, span.most, 4, '..')} {span.unit} "
+        f"({span_text(span.low, span.high, 4, '..')})".replace("  ", " ")
+        for span in spans(group)
+    )
+    closes = ""
+    if title == "cause":
+        ends = dict.fromkeys(f"{100 * row['closed']:.0f}" for row in sorted(group, key=_closed))
+        ends = dict.fromkeys([next(iter(ends)), [*ends][-1]])
+        closes = f", closes {' .. '.join(ends)} %{' each' if len(group) > 1 else ''}"
+    probability = min(float(row["probability"]) for row in group)
+    where = places(group)
+    line = f"  {title} {group[0]['effect']} at {where}: p {probability:.2f}{closes}; {words}"
+    names = ", ".join(str(row["location"]) for row in group)
+    return [line] if where == names else [line, f"    at {names}"]
+
+
+def _closed(cause: Mapping[str, Any]) -> float:
+    return float(cause["closed"])
 
 
 def beyond_references(diagnosis: Mapping[str, Any]) -> list[str]:
