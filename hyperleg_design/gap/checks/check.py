@@ -16,8 +16,10 @@ from hyperleg_design.gap.checks.gates import unusable
 from hyperleg_design.gap.checks.plausibility import implausible
 from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.effects.excitation import Excitation
+from hyperleg_design.gap.logs.columns import JOINT_SIGNALS, MOTOR_SIGNALS, unit
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.sampling import Column, Sampling, columns_of, sampling_of
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, NOTE, SEVERITIES, WARNING, Finding
 from hyperleg_design.writing import plain
@@ -115,7 +117,11 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
     Returns:
         Sampling, columns, findings, and what the log can show.
     """
-    sampling, columns = sampling_of(log.time), columns_of(log)
+    sampling = sampling_of(log.time)
+    columns = tuple(
+        dataclasses.replace(column, unit=_unit(column.column, subject))
+        for column in columns_of(log)
+    )
     refused = unusable(log, subject)
     measured = not any(f.signal == "t" or f.signal.startswith("position/") for f in refused)
     found = [
@@ -131,6 +137,18 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
     return Check(
         log.name, sampling, columns, ordered, excitation_of(log, subject) if measured else ()
     )
+
+
+def _unit(column: str, subject: Subject | None) -> str:
+    """Unit of a column, by the joint or motor that it is of where the robot is known."""
+    signal, _, name = column.partition("/")
+    own = unit(column)
+    if subject is None or signal not in (*JOINT_SIGNALS, *MOTOR_SIGNALS):
+        return own
+    if signal in JOINT_SIGNALS:
+        return unit_at(subject, "joint", name, own)
+    aliases = dict(zip(subject.motor_aliases, subject.motors, strict=True))
+    return unit_at(subject, "motor", aliases.get(name, name), own)
 
 
 def _merged(findings: list[Finding]) -> list[Finding]:

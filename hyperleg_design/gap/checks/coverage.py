@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.signals.signals import Signals
 
 FASTER = 1.25
@@ -39,12 +40,13 @@ def beyond_references(tests: Sequence[Signals], references: Sequence[Signals]) -
     remarks = []
     for place, joint in enumerate(tests[0].subject.joints):
         more = []
+        unit = unit_at(tests[0].subject, "joint", joint, "rad")
         if speed[place] > FASTER * usual[place]:
-            more.append(f"at up to {speed[place]:.3g} rad/s (references {usual[place]:.3g})")
+            more.append(f"at up to {speed[place]:.3g} {unit}/s (references {usual[place]:.3g})")
         if further[place]:
             more.append(
-                f"from {low[place]:.3g} to {high[place]:.3g} rad (references {below[place]:.3g} to "
-                f"{above[place]:.3g})"
+                f"from {low[place]:.3g} to {high[place]:.3g} {unit} (references "
+                f"{below[place]:.3g} to {above[place]:.3g})"
             )
         if more:
             remarks.append(

@@ -4,7 +4,7 @@ under which load, what was measured.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.sampling import quantum
+from hyperleg_design.gap.model.joint_units import slides
+from hyperleg_design.gap.model.postures import posture_dependent, turning
 from hyperleg_design.gap.model.subject import Subject
 
 SEGMENT = 16384
@@ -45,9 +47,10 @@ def motion_of(log: Log, subject: Subject | None) -> Motion:
         The facts.
     """
     joints = list(log.joints)
-    position = log.stack("position", joints)
+    scale = np.array([1 / RULES.motion.lever if _slides(subject, j) else 1.0 for j in joints])
+    position = log.stack("position", joints) * scale
     rate = 1 / log.step
-    velocity = np.stack([_speed(log, joint) for joint in joints], -1)
+    velocity = np.stack([_speed(log, joint) for joint in joints], -1) * scale
     moving = np.abs(velocity) > RULES.motion.moving
     reversals, spread, slow = np.zeros(len(joints)), np.zeros(len(joints)), np.zeros(len(joints))
     for i in range(len(joints)):
@@ -79,8 +82,45 @@ def motion_of(log: Log, subject: Subject | None) -> Motion:
     commands = np.array([_content(_asked(log, own), rate, noisy=False) for own in names])
     content = np.array([_content(q, rate) for q in position.T]) * moving.any(0)
     swing = np.nanmax(position, 0) - np.nanmin(position, 0)
-    facts = reversals, spread, swing, content, commands, slow
-    return Motion(np.array(joints), *facts, measured | asked, measured, asked)
+    return Motion(
+        joints=np.array(joints),
+        reversals=reversals,
+        spread=spread,
+        swing=swing,
+        acceleration=_acceleration(log, velocity),
+        content=content,
+        command=commands,
+        slow=slow,
+        torque=measured | asked,
+        measured=measured,
+        asked=asked,
+        steered=with_gains,
+        posture=_of_joints(subject, joints, posture_dependent),
+        turning=_of_joints(subject, joints, turning),
+    )
+
+
+def _slides(subject: Subject | None, joint: str) -> bool:
+    return subject is not None and slides(subject, "joint", joint)
+
+
+def _of_joints(
+    subject: Subject | None, joints: Sequence[str], fact: Callable[[Subject], np.ndarray]
+) -> np.ndarray:
+    """A fact of the robot's joints, in the order of the log; true where the robot is not known."""
+    if subject is None:
+        return np.ones(len(joints), bool)
+    facts = dict(zip(subject.joints, fact(subject).tolist(), strict=True))
+    return np.array([facts.get(joint, True) for joint in joints], bool)
+
+
+def _acceleration(log: Log, velocity: np.ndarray) -> np.ndarray:
+    """Of each joint, smoothed over 0.1 s, what is exceeded for a twentieth of the time `(n,)`."""
+    width = max(1, round(0.1 / log.step))
+    change = velocity[width:] - velocity[:-width]
+    if not len(change):
+        return np.zeros(velocity.shape[1])
+    return np.asarray(np.percentile(np.abs(change), 95, axis=0) / (width * log.step))
 
 
 def _asked(log: Log, names: Sequence[str]) -> np.ndarray:

@@ -16,6 +16,7 @@ from hyperleg_design.gap.checks.target_plausibility import implausible_targets
 from hyperleg_design.gap.checks.torque_plausibility import implausible_torques
 from hyperleg_design.gap.logs.frozen import frozen
 from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, NOTE, WARNING, Finding
 from hyperleg_design.gap.signals.smoothing import bridged
@@ -142,7 +143,8 @@ def _robot(log: Log, subject: Subject) -> Iterator[Finding]:
     if outside:
         far = [o for o in outside if o[2]]
         text = ", ".join(
-            f"{joint} by {beyond:.3g} rad" for joint, beyond, _ in (far or outside)[:4]
+            f"{joint} by {beyond:.3g} {unit_at(subject, 'joint', joint, 'rad')}"
+            for joint, beyond, _ in (far or outside)[:4]
         )
         severity = ERROR if far else WARNING
         yield Finding(

@@ -80,7 +80,10 @@ class MotionRules:
     """Facts of the motion that effects ask for."""
 
     moving: float = 0.05
-    """Speed from which a joint counts as moving [rad/s] (assumed)."""
+    """Speed from which a joint counts as moving [rad/s] (assumed); of a slide, over
+    `lever`."""
+    lever: float = 0.3
+    """Length over which the metres of a slide count as radians [m] (assumed: a link of an arm)."""
     noise: float = 1.5
     """Times the power of noise that does not count as motion [-] (assumed)."""
 

@@ -41,7 +41,9 @@ class Motion:
     spread: np.ndarray
     """Of speeds while moving [-]."""
     swing: np.ndarray
-    """[rad]"""
+    """[rad]; of slides over a lever."""
+    acceleration: np.ndarray
+    """Size that is exceeded for a twentieth of the time [rad/s^2]; of slides over a lever."""
     content: np.ndarray
     """Frequency below which 98 % of the speed's power lies [Hz]."""
     command: np.ndarray
@@ -54,6 +56,12 @@ class Motion:
     """Whether a torque or current was measured."""
     asked: np.ndarray
     """Whether targets with gains or torque commands are known."""
+    steered: np.ndarray
+    """Whether targets with gains are known."""
+    posture: np.ndarray
+    """Whether the joint's position changes the torques that the robot needs."""
+    turning: np.ndarray
+    """Whether what the joint carries changes its direction."""
 
     @property
     def reversing(self) -> np.ndarray:
@@ -79,6 +87,8 @@ class Need:
     asked: bool = False
     """Whether only what was asked of drives, and measured of them, tells it apart from mechanics;
     else their torque has to be known."""
+    steered: bool = False
+    """Whether what was asked must be known by targets with gains."""
     speeds: bool = False
     """Whether speeds of motors and joints show it, where a log has both."""
 
@@ -98,10 +108,14 @@ def shown_by(effect: str, need: Need, log: Log, motion: Motion) -> Excitation:
     if need.speeds and (by := by_speeds(effect, log, motion)) is not None:
         return by
     known = motion.asked if need.asked else motion.torque
+    if need.steered:
+        known = motion.steered
     if not known.any():
         why = "no torque, no current, and no targets with gains: forces are unknown"
         if need.asked:
             why = "no targets with gains and no torque command: what was asked for is unknown"
+        if need.steered:
+            why = "no targets with gains: what the controller asked for is unknown"
         return Excitation(effect, False, (), why)
     shown = need.passed(motion) & known
     good = need.good

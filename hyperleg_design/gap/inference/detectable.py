@@ -19,7 +19,9 @@ from hyperleg_design.gap.effects import EFFECTS, UNLISTED
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.cause_prior import usual_error
+from hyperleg_design.gap.inference.hypothesis import Hypothesis
 from hyperleg_design.gap.inference.search import Search
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.model.subject import Subject
 
 OFTEN = 1.28
@@ -44,27 +46,28 @@ class Detectable:
         return dict(vars(self))
 
 
-def detectable(search: Search) -> tuple[Detectable, ...]:
+def detectable(search: Search, beside: Hypothesis | None = None) -> tuple[Detectable, ...]:
     """State the smallest fault that logs would have shown nine times in ten, by effect and place.
 
     Args:
         search: that was made on the logs.
+        beside: hypothesis whose noise and discrepancy a fault would have had to stand out of; by
+            default that of no cause, in which a gap that a cause explains counts as discrepancy.
 
     Returns:
         Of each effect and place that the logs show: for each size of a linear effect, and for the
         size of a nonlinear one that has a single size.
     """
+    scales = (beside or search.fits.nothing).scales
+    subject = search.evidence.signals[0].subject
     entries: list[tuple[str, str, int, float, float, float]] = []
     for (name, place, standing), traced in search.traces.items():
         if standing or isinstance(traced, screen.NotJudged) or name in UNLISTED:
             continue
         effect = EFFECTS[name]
-        subject = search.evidence.signals[0].subject
         most = np.abs(effect.bounds(place, subject) - effect.nulls).max(0)
         sizes = [i for i, p in enumerate(effect.parameters) if not p.shape]
-        information = search.promises.information(
-            (name, place, standing), search.fits.nothing.scales
-        )
+        information = search.promises.information((name, place, standing), scales)
         if isinstance(traced, list):
             for i in sizes:
                 entries.append((name, place, i, traced[0].usual[i], most[i], information[i]))
@@ -89,7 +92,8 @@ def detectable(search: Search) -> tuple[Detectable, ...]:
         size = max((np.sqrt(2 * odds) + OFTEN) * deviation, beyond)
         parameter = EFFECTS[name].parameters[i]
         if 0 < size <= limit:
-            found.append(Detectable(name, place, parameter.name, float(size), parameter.unit))
+            unit = unit_at(subject, EFFECTS[name].kind, place, parameter.unit)
+            found.append(Detectable(name, place, parameter.name, float(size), unit))
     return tuple(found)
 
 

@@ -18,6 +18,7 @@ from hyperleg_design.gap.inference.cross_validation import Prediction
 from hyperleg_design.gap.inference.hypothesis import Hypothesis
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.unlisted import makes_noise
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.signals.signals import RESIDUALS
 
 COUNTS = 0.25
@@ -73,9 +74,14 @@ class GapSize:
 
     @property
     def unit(self) -> str:
-        """Of the channels that count."""
-        place = int(np.flatnonzero(self.counts)[0])
-        return RESIDUALS[self.evidence.channels[place].residual][1]
+        """Of the channels that count; both units where joints that turn and that slide do."""
+        subject = self.evidence.signals[0].subject
+        units = set()
+        for place in np.flatnonzero(self.counts).tolist():
+            channel = self.evidence.channels[place]
+            kind, unit = RESIDUALS[channel.residual]
+            units.add(unit_at(subject, kind, channel.name, unit))
+        return ", ".join(sorted(units))
 
     @property
     def expected(self) -> float:

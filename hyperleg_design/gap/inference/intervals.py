@@ -8,6 +8,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.cause import Cause
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.diagnosis import Value
 
@@ -36,7 +37,7 @@ def intervals(
         torque_error: standard deviation of the scale of all torques [-].
 
     Returns:
-        Values by the name of the parameter, and what follows from them.
+        Values by the name of the parameter, and what follows from them, in the units of the place.
     """
     found = {}
     effect = EFFECTS[cause.effect]
@@ -46,7 +47,8 @@ def intervals(
             rough = np.hypot(rough, torque_error * values[i])
         reach = NORMAL * np.hypot(deviation[i], rough)
         low, high = max(values[i] - reach, cause.low[i]), min(values[i] + reach, cause.high[i])
-        found[parameter.name] = Value(float(values[i]), float(low), float(high), parameter.unit)
+        unit = unit_at(subject, effect.kind, cause.location, parameter.unit)
+        found[parameter.name] = Value(float(values[i]), float(low), float(high), unit)
     return found | _derived(subject, cause, values, found)
 
 
@@ -68,7 +70,12 @@ def _derived(
             below[name] = float(np.hypot(below[name], min(*moves, 0.0)))
             above[name] = float(np.hypot(above[name], max(*moves, 0.0)))
     told = {
-        name: Value(value, value - below[name], value + above[name], unit)
+        name: Value(
+            value,
+            value - below[name],
+            value + above[name],
+            unit_at(subject, effect.kind, cause.location, unit),
+        )
         for name, (value, unit) in middle.items()
     }
     return {

@@ -69,6 +69,8 @@ class Column:
     """Whether it never changes."""
     held: int
     """Rows over which each value is kept."""
+    unit: str = ""
+    """Of its values."""
 
 
 def sampling_of(time: np.ndarray) -> Sampling:

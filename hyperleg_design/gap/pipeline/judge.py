@@ -60,10 +60,12 @@ def judge_signals(
     evidence = search.evidence
     held = predicted(evidence, result.best, rules)
     size = GapSize.of(evidence, result.best, held, rules)
-    answer = Answer(
-        evidence, result, posterior_of(result, evidence, size, rules), size, rules, seed, apart
-    )
-    return answer.diagnosis(checks, tuple(one.mapping() for one in detectable(search)))
+    posterior = posterior_of(result, evidence, size, rules)
+    answer = Answer(evidence, result, posterior, size, rules, seed, apart)
+    # a gap that causes explain hides no other fault, one that nothing explains does
+    beside = search.fits.nothing if posterior.verdict == "unknown" else posterior.hypothesis
+    sensitivity = tuple(entry.mapping() for entry in detectable(search, beside))
+    return answer.diagnosis(checks, sensitivity)
 
 
 def _searched(

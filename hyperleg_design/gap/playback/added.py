@@ -14,6 +14,7 @@ from hyperleg_design.evaluation import statistics
 from hyperleg_design.evaluation.evaluate import evaluate_many
 from hyperleg_design.evaluation.measures import measure_of
 from hyperleg_design.evaluation.protocol import Protocol
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.playback.overlay import Overlay
 from hyperleg_design.gap.playback.replay import best_input, replay
 from hyperleg_design.gap.playback.windows import short_windows
@@ -43,11 +44,13 @@ COMPARED = (
 
 @dataclass(frozen=True)
 class Replayed:
-    """Error of the predicted position of one joint over short windows of all logs, root mean square
-    [rad].
+    """Error of the predicted position of one joint over short windows of all logs, root mean
+    square.
     """
 
     joint: str
+    unit: str
+    """Of the error."""
     before: float
     after: float
     windows: int
@@ -100,7 +103,14 @@ def replayed(signals: Sequence[Signals], overlay: Overlay) -> list[Replayed]:
     best = min(means, key=lambda way: float(means[way].sum(1).min()))
     root = np.sqrt(means[best])
     return [
-        Replayed(joint, float(root[0, j]), float(root[1, j]), int(usable.sum()), best)
+        Replayed(
+            joint,
+            unit_at(subject, "joint", joint, "rad"),
+            float(root[0, j]),
+            float(root[1, j]),
+            int(usable.sum()),
+            best,
+        )
         for j, joint in enumerate(subject.joints)
     ]
 

@@ -12,9 +12,10 @@ import numpy as np
 
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.effects.series import low_passed
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.playback.sheets import root_mean_square
 from hyperleg_design.gap.signals.resting import moving_ticks, sticking
-from hyperleg_design.gap.signals.signals import OF_MOTORS, Signals, row_names
+from hyperleg_design.gap.signals.signals import OF_MOTORS, RESIDUALS, Signals, row_names, row_units
 
 BAND = 8.0
 """Low-pass for the eye [Hz]; the diagnosis itself chooses a band of its own."""
@@ -31,16 +32,20 @@ class Evidence:
     time: np.ndarray
     """`(t,)` [s]."""
     before: np.ndarray
-    """Residual of the nominal model, less what stands in the references, too `(t, r)` [Nm]; NaN
-    where it cannot be told, and where a joint may stick."""
+    """Residual of the nominal model, less what stands in the references, too `(t, r)`; NaN where
+    it cannot be told, and where a joint may stick."""
     explained: np.ndarray
-    """What the causes leave there `(t, r)` [Nm]."""
+    """What the causes leave there `(t, r)`."""
     speed: np.ndarray
-    """Of the same joints or motors `(t, r)` [rad/s]; NaN where a row has none."""
+    """Of the same joints or motors `(t, r)`; NaN where a row has none."""
+    units: tuple[str, ...]
+    """Of the residual, by row."""
+    speed_units: tuple[str, ...]
+    """Of the speed, by row."""
 
     @property
     def after(self) -> np.ndarray:
-        """Residual that the causes leave, `(t, r)` [Nm]."""
+        """Residual that the causes leave, `(t, r)`."""
         return self.before - self.explained
 
     @property
@@ -85,8 +90,19 @@ def evidence(
     elif residual_name in OF_MOTORS:
         speed = signals.velocity @ signals.subject.joint_from_motor
     empty = np.where(known, 0.0, np.nan)
-    names, before, made = row_names(signals.subject, residual_name), before + empty, made + empty
-    return Evidence(signals.log.name, residual_name, names, signals.time, before, made, speed)
+    subject, (kind, _) = signals.subject, RESIDUALS[residual_name]
+    names = row_names(subject, residual_name)
+    return Evidence(
+        log=signals.log.name,
+        residual_name=residual_name,
+        rows=names,
+        time=signals.time,
+        before=before + empty,
+        explained=made + empty,
+        speed=speed,
+        units=row_units(subject, residual_name),
+        speed_units=tuple(unit_at(subject, kind, row, "rad/s") for row in names),
+    )
 
 
 def _explained(

@@ -175,7 +175,7 @@ def _rows(group: Sequence[Sheet], floors: dict[tuple[str, str, str], np.ndarray]
         for k, name in enumerate(names):
             if not ticks[k]:
                 continue
-            what = first.signal, first.unit, first.kind, name, regime
+            what = first.signal, first.units[k], first.kind, name, regime
             part = float(min(share[k], 1.0)) if np.isfinite(share[k]) else 0.0
             numbers = float(gap[k]), float(floor[k]), float(mean[k]), part, float(size[k])
             rows.append((k, Row(*what, *numbers, int(ticks[k]))))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.playback.regimes import regimes_of
 from hyperleg_design.gap.playback.replay import best_input, replay
 from hyperleg_design.gap.playback.windows import short_windows
@@ -36,7 +37,8 @@ class Sheet:
 
     signal: str
     kind: str
-    unit: str
+    units: tuple[str, ...]
+    """By place."""
     names: tuple[str, ...]
     residual: np.ndarray
     """`(t, k)`, NaN where unknown."""
@@ -122,13 +124,14 @@ def _sheet(
 ) -> Sheet:
     """Sheet of a residual; `own` is the signal itself, whose size tells what the residual means."""
     predicted = signal in ("position", "velocity")
+    units = tuple(unit_at(signals.subject, kind, name, unit) for name in names)
     regimes = regimes_of(signals, kind, names, None if predicted else own)
     size = np.full(len(names), np.nan)
     if own is not None:
         size = root_mean_square(np.where(signals.valid[:, None], own, np.nan))
     if predicted:
         floor = _smoothing_error(signals, signal, kind)
-        return Sheet(signal, kind, unit, names, residual, floor, size, regimes, {})
+        return Sheet(signal, kind, units, names, residual, floor, size, regimes, {})
     spectrum, frequency, weight = _spectrum(residual, signals.step)
     kept = _band(spectrum, frequency, 0.0, BAND, residual)
     high = frequency > BAND
@@ -140,7 +143,7 @@ def _sheet(
         for low, top in BANDS
         if low < 0.5 / signals.step
     }
-    return Sheet(signal, kind, unit, names, kept, np.nan_to_num(floor), size, regimes, bands)
+    return Sheet(signal, kind, units, names, kept, np.nan_to_num(floor), size, regimes, bands)
 
 
 def _smoothing_error(signals: Signals, signal: str, kind: str) -> np.ndarray:

@@ -23,11 +23,12 @@ from hyperleg_design.gap.effects import EFFECTS, effect
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.model.joint_units import slides, unit_at
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.playback.standard_run import TICK, simulated_log
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
-from hyperleg_design.gap.signals.signals import RESIDUALS, Signals, row_names
+from hyperleg_design.gap.signals.signals import Signals, row_names, row_units
 
 DURATION, STANDING = 12.0, 6.0
 """Of the chirp, and of the biped's motion [s]."""
@@ -50,6 +51,8 @@ class Shown:
     location: str
     values: np.ndarray
     """Of the parameters."""
+    units: tuple[str, ...]
+    """Of the parameters at this place."""
     time: np.ndarray
     """`(t,)` [s]."""
     residual_name: str
@@ -64,6 +67,8 @@ class Shown:
     """Of the same row in a simulated log with the effect, raw `(t,)`."""
     joint: str
     """Whose motion is shown."""
+    slides: bool
+    """Whether that joint slides: its motion is in m then, its torque in N."""
     position: np.ndarray
     velocity: np.ndarray
     torque: np.ndarray
@@ -146,6 +151,7 @@ def show(
         robot=subject.name,
         location=location,
         values=values,
+        units=tuple(unit_at(subject, one.kind, location, p.unit) for p in one.parameters),
         time=signals.time,
         residual_name=residual_name,
         row=row,
@@ -153,6 +159,7 @@ def show(
         trace=trace,
         residual=residual,
         joint=subject.joints[joint],
+        slides=slides(subject, "joint", subject.joints[joint]),
         position=signals.position[:, joint],
         velocity=signals.velocity[:, joint],
         torque=(signals.believed @ subject.joint_from_motor.T)[:, joint],
@@ -261,9 +268,7 @@ def _largest(
         size = np.sqrt(np.where(np.isfinite(rows), rows, 0.0) ** 2).mean(0)
         place = int(np.argmax(size))
         if size[place] > NOTHING:
-            unit = RESIDUALS[residual_name][1]
-            if residual_name == "base":
-                unit = "N" if place < 3 else "Nm"
+            unit = row_units(signals.subject, residual_name)[place]
             trace, residual = rows[:, place], signals.residual[residual_name][:, place]
             residual = np.where(np.isfinite(trace), residual, np.nan)
             name = row_names(signals.subject, residual_name)[place]

@@ -11,6 +11,7 @@ import numpy as np
 
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.base import BaseMotion
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.model.supply import over_nominal
 from hyperleg_design.gap.signals.limit_cycle import LimitCycle
@@ -45,6 +46,22 @@ def row_names(subject: Subject, residual_name: str) -> tuple[str, ...]:
     feet = tuple(f"{foot}_{axis}" for foot in subject.feet for axis in "xyz")
     kind, _ = RESIDUALS[residual_name]
     return {"joint": subject.joints, "motor": subject.motors, "robot": WRENCH, "foot": feet}[kind]
+
+
+def row_units(subject: Subject, residual_name: str) -> tuple[str, ...]:
+    """State the unit of each row of a residual.
+
+    Args:
+        subject: the robot.
+        residual_name: of `RESIDUALS`.
+
+    Returns:
+        One unit for each of `row_names`.
+    """
+    kind, unit = RESIDUALS[residual_name]
+    if kind == "robot":
+        return tuple("N" if row.startswith("force") else "Nm" for row in WRENCH)
+    return tuple(unit_at(subject, kind, row, unit) for row in row_names(subject, residual_name))
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,6 +18,7 @@ from hyperleg_design.gap.experiments.designed_experiment import (
     inseparable,
 )
 from hyperleg_design.gap.experiments.pair import apart
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.report.style import figure_style, save
 from hyperleg_design.writing import write_text
 
@@ -144,20 +145,25 @@ def _deviation_lines(experiment: Experiment) -> list[str]:
     blocks, gram = experiment.blocks, experiment.gram(experiment.chosen)
     lines = []
     for effect in dict.fromkeys(place[0] for place in blocks.places):
+        subject, kind = experiment.subject, EFFECTS[effect].kind
         units = {p.name: p.unit for p in EFFECTS[effect].parameters}
-        deviations = [
-            info.standard_deviations(gram, blocks, place, experiment.subject)
+        deviations = {
+            place[1]: info.standard_deviations(gram, blocks, place, subject)
             for place in blocks.places
             if place[0] == effect
-        ]
+        }
         parts = []
-        for name in deviations[0]:
-            values = [f[name] for f in deviations if np.isfinite(f[name])]
-            parts.append(
-                f"{name} {max(values):.2g} .. {min(values):.2g} {units[name]}".rstrip()
-                if values
-                else f"{name} not shown"
+        for name in next(iter(deviations.values())):
+            shown: dict[str, list[float]] = {}
+            for location, sizes in deviations.items():
+                if np.isfinite(sizes[name]):
+                    unit = unit_at(subject, kind, location, units[name])
+                    shown.setdefault(unit, []).append(sizes[name])
+            ranges = ", ".join(
+                f"{max(values):.2g} .. {min(values):.2g} {unit}".rstrip()
+                for unit, values in shown.items()
             )
+            parts.append(f"{name} {ranges or 'not shown'}")
         lines.append(f"  {effect:<26} {'; '.join(parts)}")
     return lines
 

@@ -13,14 +13,25 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MEASURED, _EXPLAINED, _LEFT = "#2f6db3", "#c8602a", "#6b7280"
-TORQUE = "torque [Nm]"
-AXIS = {"transmission": "speed [rad/s]", "base": "force, moment [N, Nm]", "ground": "force [N]"}
-"""Axis labels of residuals that are not torques."""
+QUANTITY = {"N": "force", "Nm": "torque", "m/s": "speed", "rad/s": "speed"}
+"""What a residual is, by its unit."""
 SIZE = (5.8, 3.4)
 """Size of a figure [in]; it stays legible where a phone scales it down."""
 _SPAN = 6.0
 """Longest stretch of a log drawn [s]."""
 _MOST_DOTS = 3000
+
+
+def axis_label(unit: str) -> str:
+    """Name what is drawn along an axis: `torque [Nm]`.
+
+    Args:
+        unit: of a residual or a speed.
+
+    Returns:
+        The label.
+    """
+    return f"{QUANTITY[unit]} [{unit}]"
 
 
 def time_figure(shown: Evidence) -> Figure:
@@ -45,7 +56,7 @@ def time_figure(shown: Evidence) -> Figure:
             panel.plot(time, shown.explained[window, row], color=_EXPLAINED, label="predicted")
             panel.plot(time, shown.after[window, row], color=_LEFT, linewidth=1, label="left")
         panel.set_xlabel("time [s]")
-        panel.set_ylabel(AXIS.get(shown.residual_name, TORQUE))
+        panel.set_ylabel(axis_label(shown.units[row]))
         panel.set_title(f"{shown.rows[row]}, {shown.log}")
         panel.legend(ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.16))
         return figure
@@ -72,8 +83,8 @@ def speed_figure(shown: Evidence) -> Figure:
         panel.plot(speed[dots], shown.before[dots, row], ".", color=_MEASURED, markersize=2)
         if np.nan_to_num(shown.explained[:, row]).any():
             panel.plot(speed[dots], shown.explained[dots, row], ".", color=_EXPLAINED, markersize=2)
-        panel.set_xlabel("speed [rad/s]")
-        panel.set_ylabel(AXIS.get(shown.residual_name, TORQUE))
+        panel.set_xlabel(axis_label(shown.speed_units[row]))
+        panel.set_ylabel(axis_label(shown.units[row]))
         panel.set_title(f"{shown.rows[row]}, {shown.log}")
         return figure
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.model.joint_units import joint_unit
 from hyperleg_design.gap.playback.evidence import Evidence
 from hyperleg_design.gap.playback.sheets import root_mean_square
 
@@ -26,11 +27,19 @@ class Friction:
     """Least-squares fit of friction to what is left of one joint's torque."""
 
     constant: float
-    """Coulomb friction [Nm]."""
+    """Coulomb friction [Nm, or N where the joint slides]."""
     viscous: float
-    """Viscous friction [Nms/rad]."""
+    """Viscous friction [Nms/rad, or Ns/m]."""
     share: float
     """Share of the mean square that friction explains [-]."""
+    slides: bool = False
+    """Whether the joint slides."""
+
+    @property
+    def sizes(self) -> str:
+        """Both kinds of friction, each with its unit."""
+        units = [joint_unit(unit, self.slides) for unit in ("Nm", "Nms/rad")]
+        return f"{self.constant:.2g} {units[0]} and {self.viscous:.2g} {units[1]}"
 
     def sentence(self, joint: str) -> str:
         """Describe the remaining friction of a joint in one sentence.
@@ -42,8 +51,8 @@ class Friction:
             The sentence.
         """
         return (
-            f"Left at {joint}: a torque that goes with its speed. Plain friction of "
-            f"{self.constant:.2g} Nm and {self.viscous:.2g} Nms/rad would explain "
+            f"Left at {joint}: a {'force' if self.slides else 'torque'} that goes with its speed. "
+            f"Plain friction of {self.sizes} would explain "
             f"{100 * self.share:.0f} % of it, though another shape is more probable."
         )
 
@@ -72,7 +81,8 @@ def friction(shown: Sequence[Evidence], row: int) -> Friction:
     rest = left - columns @ fit
     share = 1.0 - float(rest @ rest) / float(left @ left)
     resists = fit[0] >= 0 and fit[0] + fit[1] * float(np.abs(speed).max()) >= 0
-    return Friction(float(fit[0]), float(fit[1]), share if resists else 0.0)
+    slides = shown[0].units[row] == joint_unit("Nm", True)
+    return Friction(float(fit[0]), float(fit[1]), share if resists else 0.0, slides)
 
 
 def hints(shapes: Sequence[Mapping[str, Any]], shown: Sequence[Evidence]) -> list[str]:
@@ -116,7 +126,7 @@ def _everywhere(shown: Sequence[Evidence], fits: Sequence[Friction], enough: flo
     if share < enough:
         return ""
     sizes = ", ".join(
-        f"{joint} {fit.constant:.2g} Nm and {fit.viscous:.2g} Nms/rad"
+        f"{joint} {fit.sizes}"
         for joint, fit in zip(shown[0].rows, fits, strict=True)
         if fit.share >= PLAIN
     )

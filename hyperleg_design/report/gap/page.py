@@ -16,8 +16,10 @@ from hyperleg_design.gap.playback.evidence import Evidence, evidence
 from hyperleg_design.gap.playback.sheets import root_mean_square
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.report.gap import figures as gap_figures
+from hyperleg_design.report.gap.alike import together
 from hyperleg_design.report.gap.drawing import robot_svg
 from hyperleg_design.report.gap.left import hints
+from hyperleg_design.report.gap.run import Run
 from hyperleg_design.report.gap.sentences import (
     CauseRow,
     capital,
@@ -42,19 +44,26 @@ MOST_TRACES = 2
 """Logs that are drawn."""
 SENSITIVITY = (
     "How small a fault could have been and still been named, nine times in ten, beside the "
-    "calibration errors that robots usually have. What is smaller these logs do not show; more "
+    "calibration errors that robots usually have and the noise that is left with the named causes "
+    "added. What is smaller these logs do not show; more "
     "excitation, longer logs or reference logs make it less."
 )
 HIDDEN = " The gap that no effect explains hides more."
 
 
-def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence[Signals]) -> Path:
+def write_gap_page(
+    folder: Path,
+    diagnosis: Mapping[str, Any],
+    signals: Sequence[Signals],
+    run: Run | None = None,
+) -> Path:
     """Write `index.html` and its figures beside `diagnosis.json`.
 
     Args:
         folder: of the diagnosis, exists.
         diagnosis: as `diagnosis.json` holds it.
         signals: of the logs that were diagnosed, for the figures.
+        run: that made the diagnosis, for the commands of what to do next.
 
     Returns:
         The path of the page.
@@ -80,7 +89,7 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
         "lead": lead(diagnosis, left),
         **_where(diagnosis, signals),
         **_bars(diagnosis),
-        "causes": [cause_row(cause) for cause in causes],
+        "causes": [cause_row(*group) for group in together(causes)],
         "remainder": left if causes and diagnosis.get("remainder") else left[1:3] if left else [],
         "trace": [] if verdict == "none" else first,
         "rivals_title": "Nearest explanations" if verdict == "unknown" else "What else was tried",
@@ -89,7 +98,7 @@ def write_gap_page(folder: Path, diagnosis: Mapping[str, Any], signals: Sequence
             f"These logs cannot tell apart {joined(named(member) for member in group)}."
             for group in diagnosis["equivalent"]
         ],
-        "next": next_steps(diagnosis),
+        "next": next_steps(diagnosis, run),
         "details": _details(diagnosis, shown, others, left),
         "provenance": {
             **{k: plain(v) for k, v in diagnosis.get("provenance", {}).items() if plain(v)},
@@ -197,11 +206,13 @@ def _details(
     left: Sequence[str],
 ) -> list[Details]:
     """All that is folded away; of a verdict of `none`, what the logs would have shown is not."""
+    causes = diagnosis["causes"]
     figures = [
         _rows(shown, bool(diagnosis["causes"])),
         Details("Another log", list(traces)) if traces else None,
         _places(diagnosis),
-        _rivals(diagnosis),
+        _in_full("Causes in full", causes) if len(together(causes)) < len(causes) else None,
+        _in_full("Rivals in full", diagnosis["rivals"]),
         _limits(diagnosis),
         Details("What is left", list(left)) if left else None,
         _not_judged(diagnosis),
@@ -220,11 +231,10 @@ def _rows(shown: Sequence[Evidence], explained: bool) -> Details | None:
         root_mean_square(np.concatenate(part))
         for part in ([s.before for s in alike], [s.after for s in alike])
     )
-    unit = gap_figures.AXIS.get(shown[0].residual_name, gap_figures.TORQUE)
-    header = ["", f"before, {unit}", *([f"after, {unit}"] if explained else [])]
+    header = ["", "before", *(["after"] if explained else [])]
     rows = [
-        [name, f"{b:.3g}", *([f"{a:.3g}"] if explained else [])]
-        for name, b, a in zip(alike[0].rows, before, after, strict=True)
+        [name, f"{b:.3g} {unit}", *([f"{a:.3g} {unit}"] if explained else [])]
+        for name, unit, b, a in zip(alike[0].rows, alike[0].units, before, after, strict=True)
         if np.isfinite(b)
     ]
     return Details("Root mean square of each row", [Table(header, rows)]) if rows else None
@@ -245,17 +255,17 @@ def _places(diagnosis: Mapping[str, Any]) -> Details | None:
     return Details("Places and regimes", [Table(header, rows)]) if rows else None
 
 
-def _rivals(diagnosis: Mapping[str, Any]) -> Details | None:
-    """All rivals with all parameters."""
+def _in_full(summary: str, entries: Sequence[Mapping[str, Any]]) -> Details | None:
+    """All causes or rivals, each by itself, with all parameters."""
     rows = []
-    for rival in diagnosis["rivals"]:
-        row = cause_row(rival)
+    for entry in entries:
+        row = cause_row(entry)
         for place, value in enumerate(row.values):
             ends = [row.closed, row.probability] if place == 0 else ["", ""]
             names = [row.effect, row.location] if place == 0 else ["", ""]
             rows.append([*names, value.name, value.value, value.interval, *ends])
     header = ["effect", "where", "parameter", "value", "95 % interval", "closes", "probability"]
-    return Details("Rivals in full", [Table(header, rows)]) if rows else None
+    return Details(summary, [Table(header, rows)]) if rows else None
 
 
 def _limits(diagnosis: Mapping[str, Any]) -> Details | None:

@@ -15,6 +15,7 @@ from hyperleg_design.gap.pipeline.diagnose import diagnose, subjects
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.report.gap.excite import plan_text, write_report
 from hyperleg_design.report.gap.page import write_gap_page
+from hyperleg_design.report.gap.run import Run
 from hyperleg_design.writing import check_output_folder, output_folder, write_json
 
 MOST_SHOWN = 3
@@ -65,9 +66,11 @@ def diagnose_to_folder(
         show=show,
     ).mapping()
     subject, _ = subjects(robot or None, reference_robot or None, tests, healthy)
+    run = Run(robot or subject.path, tuple(os.fspath(source) for source in sources), os.fspath(out))
     with output_folder(out) as folder:
         write_json(folder / "diagnosis.json", diagnosis)
-        write_gap_page(folder, diagnosis, [condition(log, subject) for log in tests[:MOST_SHOWN]])
+        shown = [condition(log, subject) for log in tests[:MOST_SHOWN]]
+        write_gap_page(folder, diagnosis, shown, run)
     return diagnosis, Path(out) / "index.html"
 
 

@@ -7,15 +7,17 @@ from dataclasses import dataclass
 from typing import Any
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.report.gap.text import beyond_references, chosen
+from hyperleg_design.report.gap.alike import places, span_text, spans, together
+from hyperleg_design.report.gap.run import Run
+from hyperleg_design.report.gap.text import beyond_references
 
 Entry = Mapping[str, Any]
 """A cause, a rival or another entry, as `diagnosis.json` holds it."""
 NOTHING_LEFT = 0.995
 """Share closed that counts as the whole gap."""
 
-MOST_SIZED, MOST_PLACES = 2, 3
-"""Causes that a sentence tells with their sizes, and places of one effect that it names."""
+MOST_SIZED = 2
+"""Causes that a sentence tells with their sizes; an effect at many places counts as one."""
 NEAREST = 0.1
 """Probability from which the nearest rival of an unknown gap is mentioned beside the verdict."""
 
@@ -53,32 +55,33 @@ def title(effect: str) -> str:
     return EFFECTS[effect].title if effect in EFFECTS else effect.replace("_", " ")
 
 
-def cause_row(cause: Entry) -> CauseRow:
-    """Make the table row of a cause, or of a rival, with each of its parameters.
+def cause_row(*causes: Entry) -> CauseRow:
+    """Make the table row of a cause, of a rival, or of causes of one effect at several places, with
+    each of their parameters.
 
     Args:
-        cause: as `diagnosis.json` holds it.
+        causes: as `diagnosis.json` holds them.
 
     Returns:
         The row.
     """
     values = []
-    for name, value, choice in chosen(cause["effect"], cause["parameters"]):
-        unit = f" {value['unit']}".replace("^2", "²").rstrip()
-        words = name.replace("_", " ")
-        if choice:
-            values.append(ValueRow(words, choice, ""))
+    for span in spans(causes):
+        unit = f" {span.unit}".replace("^2", "²").rstrip()
+        words = span.name.replace("_", " ")
+        if span.words:
+            values.append(ValueRow(words, span.words, ""))
         else:
-            low, high = float(value["low"]), float(value["high"])
-            values.append(
-                ValueRow(words, f"{float(value['value']):.3g}{unit}", f"{low:.3g} to {high:.3g}")
-            )
+            size = f"{span_text(span.least, span.most)}{unit}"
+            values.append(ValueRow(words, size, f"{span.low:.3g} to {span.high:.3g}"))
+    closed = sorted(float(cause["closed"]) for cause in causes)
+    shares = dict.fromkeys(share_text(share) for share in (closed[0], closed[-1]))
     return CauseRow(
-        capital(title(cause["effect"])),
-        str(cause["location"]),
+        capital(title(causes[0]["effect"])),
+        places(causes),
         tuple(values) or (ValueRow("", "", ""),),
-        share_text(float(cause["closed"])),
-        probability_text(float(cause["probability"])),
+        " to ".join(shares) + (" each" if len(causes) > 1 else ""),
+        probability_text(min(float(cause["probability"]) for cause in causes)),
     )
 
 
@@ -116,19 +119,20 @@ def verdict_sentence(diagnosis: Entry) -> str:
         The sentence.
     """
     causes, verdict = list(diagnosis["causes"]), str(diagnosis["verdict"])
-    places = joined(places_of(diagnosis)[:2])
+    where = joined(places_of(diagnosis)[:2])
     if verdict == "none":
         return "These logs show no gap between robot and model."
     if verdict == "unknown" or not causes:
         return (
-            f"There is a gap{f' at {places}' if places else ''}, and no effect of the catalogue "
+            f"There is a gap{f' at {where}' if where else ''}, and no effect of the catalogue "
             "explains it."
         )
     if verdict == "ambiguous":
         sets = [[named(member) for member in group] for group in diagnosis["equivalent"]]
-        together = "; ".join(joined(group, "or") for group in sets)
-        return f"Either {together or phrase(causes)}: these logs cannot tell which."
-    return f"{capital(phrase(causes))} explain{'' if len(causes) > 1 else 's'} the gap."
+        alike = "; ".join(joined(group, "or") for group in sets)
+        return f"Either {alike or phrase(causes)}: these logs cannot tell which."
+    plural = len(together(causes)) > 1
+    return f"{capital(phrase(causes))} explain{'' if plural else 's'} the gap."
 
 
 def phrase(causes: Sequence[Entry]) -> str:
@@ -141,20 +145,18 @@ def phrase(causes: Sequence[Entry]) -> str:
     Returns:
         The phrase.
     """
-    places: dict[str, list[str]] = {}
-    for cause in causes:
-        size = _size(cause) if len(causes) <= MOST_SIZED else ""
-        places.setdefault(str(cause["effect"]), []).append(f"{cause['location']}{size}")
-    return joined(
-        f"{title(effect)} at "
-        f"{joined(where) if len(where) <= MOST_PLACES else f'{len(where)} places'}"
-        for effect, where in places.items()
-    )
+    groups = together(causes)
+    where: dict[str, list[str]] = {}
+    for group in groups:
+        size = _size(group) if len(groups) <= MOST_SIZED else ""
+        names = joined(places(group).split(", "))
+        where.setdefault(str(group[0]["effect"]), []).append(f"{names}{size}")
+    return joined(f"{title(effect)} at {joined(names)}" for effect, names in where.items())
 
 
-def _size(cause: Entry) -> str:
-    """The value of a cause's first parameter, in parentheses; empty where it has none."""
-    for value in cause_row(cause).values:
+def _size(group: Sequence[Entry]) -> str:
+    """The first size of some causes of one effect, in parentheses; empty where they have none."""
+    for value in cause_row(*group).values:
         if value.interval:
             return f" ({value.name} {value.value})"
     return ""
@@ -229,16 +231,17 @@ def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
     return texts
 
 
-def next_steps(diagnosis: Entry) -> list[tuple[str, str]]:
+def next_steps(diagnosis: Entry, run: Run | None = None) -> list[tuple[str, str]]:
     """List what to do next.
 
     Args:
         diagnosis: as `diagnosis.json` holds it.
+        run: that made it, whose paths go into the commands.
 
     Returns:
         A sentence and a command for each step; the command may be empty.
     """
-    steps, verdict = [], diagnosis["verdict"]
+    steps, verdict, run = [], diagnosis["verdict"], run or Run()
     experiment = diagnosis["separating_experiment"]
     if experiment:
         steps.append((_experiment(experiment), ""))
@@ -246,7 +249,13 @@ def next_steps(diagnosis: Entry) -> list[tuple[str, str]]:
         steps.append(
             (
                 "Add what was named to the simulation, and replay a log that was not used here:",
-                "hyperleg gap apply FOLDER --robot ROBOT --logs OTHER_LOG --out overlay.yaml",
+                run.command(
+                    "apply",
+                    run.out,
+                    *run.named_robot,
+                    *("--logs", "OTHER_LOG"),
+                    *("--out", f"{run.out.rstrip('/')}_overlay.yaml"),
+                ),
             )
         )
     referred = bool(diagnosis.get("provenance", {}).get("reference"))
@@ -255,7 +264,13 @@ def next_steps(diagnosis: Entry) -> list[tuple[str, str]]:
             (
                 "Give logs of the same motion from when all was well: what the model always lacks "
                 "is then no part of the gap.",
-                "hyperleg gap diagnose ... --reference HEALTHY_LOG",
+                run.command(
+                    "diagnose",
+                    *run.named_robot,
+                    *("--logs", *run.logs),
+                    *("--reference", "HEALTHY_LOG"),
+                    *("--out", f"{run.out.rstrip('/')}_with_reference"),
+                ),
             )
         )
     if verdict == "unknown":
@@ -265,7 +280,7 @@ def next_steps(diagnosis: Entry) -> list[tuple[str, str]]:
             (
                 "Record motions that show more: they stay inside the robot's limits and tell "
                 "effects apart.",
-                "hyperleg gap excite --robot ROBOT --out motions",
+                run.command("excite", *run.named_robot, "--out", "motions"),
             )
         )
     return steps

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.gap.model.joint_units import joint_unit
 from hyperleg_design.gap.playback.show import Shown
-from hyperleg_design.report.gap.text import chosen
+from hyperleg_design.report.gap.choices import chosen
 from hyperleg_design.report.style import figure_style, save
 
 TRACE, RESIDUAL, BEFORE, TARGET = "#c8602a", "#9ca3af", "#2f6db3", "#6b7280"
@@ -74,8 +75,8 @@ def show_summary(shown: Shown) -> dict[str, Any]:
         "robot": shown.robot,
         "location": shown.location,
         "parameters": {
-            p.name: {"value": float(v), "unit": p.unit}
-            for p, v in zip(shown.effect.parameters, shown.values, strict=True)
+            p.name: {"value": float(v), "unit": unit}
+            for p, unit, v in zip(shown.effect.parameters, shown.units, shown.values, strict=True)
         },
         "residual": shown.residual_name,
         "row": shown.row,
@@ -83,7 +84,7 @@ def show_summary(shown: Shown) -> dict[str, Any]:
         "residual_rms": _rms(shown.residual[known]),
         "unit": shown.unit,
         "closed_loop_rms": _rms(shown.after - shown.before),
-        "closed_loop_unit": "rad",
+        "closed_loop_unit": joint_unit("rad", shown.slides),
     }
 
 
@@ -110,7 +111,10 @@ def show_text(summary: Mapping[str, Any]) -> str:
         )
     else:
         lines.append("leaves no trace on this motion")
-    lines.append(f"moves the closed loop by {1e3 * summary['closed_loop_rms']:.3g} mrad RMS")
+    lines.append(
+        f"moves the closed loop by {1e3 * summary['closed_loop_rms']:.3g} "
+        f"m{summary['closed_loop_unit']} RMS"
+    )
     return "\n".join([*lines, str(summary["figure"])] if "figure" in summary else lines)
 
 
@@ -145,28 +149,28 @@ def show_figure(shown: Shown, path: str | Path) -> Path:
             ("torque", shown.torque, "Nm"),
         )
         first = None
-        for column, (name, values, unit) in enumerate(others):
+        for column, (name, values, turning) in enumerate(others):
             axes = figure.add_subplot(grid[1, column], sharey=first)
             first = first or axes
             axes.plot(
                 values, shown.trace, ".", markersize=2, color=TRACE, alpha=0.5, rasterized=True
             )
-            axes.set_xlabel(f"{name} of {shown.joint} [{unit}]")
+            axes.set_xlabel(f"{name} of {shown.joint} [{joint_unit(turning, shown.slides)}]")
             if column == 0:
                 axes.set_ylabel(f"trace [{shown.unit}]")
         _draw_loop(figure.add_subplot(grid[2, :2]), shown)
         axes = figure.add_subplot(grid[2, 2])
         axes.plot(shown.time, 1e3 * (shown.after - shown.before), color=TRACE, linewidth=0.9)
         axes.set_xlabel("time [s]")
-        axes.set_ylabel("moved by the effect [mrad]")
+        axes.set_ylabel(f"moved by the effect [m{joint_unit('rad', shown.slides)}]")
         axes.set_title("all of it", loc="left")
         return save(figure, path, 110)
 
 
 def _caption(shown: Shown) -> str:
     values = ", ".join(
-        f"{p.name} {v:.4g} {p.unit}".rstrip()
-        for p, v in zip(shown.effect.parameters, shown.values, strict=True)
+        f"{p.name} {v:.4g} {unit}".rstrip()
+        for p, unit, v in zip(shown.effect.parameters, shown.units, shown.values, strict=True)
     )
     return "\n".join(textwrap.wrap(f"at {shown.location} of {shown.robot}, {values}", 125))
 
@@ -226,7 +230,7 @@ def _draw_loop(axes: Any, shown: Shown) -> None:
     room = 0.08 * max(float(np.ptp(values)), 1e-6)
     axes.set_ylim(values.min() - room, values.max() + 3.5 * room)
     axes.set_xlabel("time [s]")
-    axes.set_ylabel(f"{shown.joint} [rad]")
+    axes.set_ylabel(f"{shown.joint} [{joint_unit('rad', shown.slides)}]")
     axes.set_title("closed loop, where the effect moves it most", loc="left")
     axes.legend(loc="upper right", ncols=3, fontsize=9)
 

@@ -7,12 +7,11 @@ from typing import Any
 
 from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.checks.coverage import REMEDY
-from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.logs.columns import unit
 from hyperleg_design.gap.logs.sampling import Column
 from hyperleg_design.gap.pipeline.detected_causes import APART
 from hyperleg_design.gap.playback.added import Changed, Replayed
 from hyperleg_design.gap.playback.measure import Gap
+from hyperleg_design.report.gap.alike import places, span_text, spans, together
 
 NOISE_FROM = {
     "reference": "reference logs",
@@ -71,26 +70,38 @@ def _places(where: tuple[str, ...]) -> str:
 
 
 def _signals(columns: Sequence[Column]) -> list[str]:
-    """One line a kind of signal: how many, rate, quantisation, noise, saturation, the worst of its
-    columns.
+    """One line a kind of signal: how many, the lowest rate, ranges of quantisation and noise, the
+    longest saturation.
     """
     kinds: dict[str, list[Column]] = {}
     for column in columns:
         kinds.setdefault(column.column.partition("/")[0], []).append(column)
     lines = []
     for kind, members in kinds.items():
-        quantum, units = max(c.quantum for c in members), [unit(c.column) for c in members]
+        steps = _ranges([(c.quantum, c.unit) for c in members if c.quantum])
         parts = [
             f"{kind} ({len(members)})",
             f"{min(c.rate for c in members):.4g} Hz",
-            f"steps of {quantum:.2g} {units[0]}".rstrip() if quantum else "",
-            f"noise {max(c.noise for c in members):.2g} {units[0]}".rstrip(),
-            f"at a bound {100 * max(c.saturated for c in members):.2g} %"
+            f"steps of {steps}" if steps else "",
+            f"noise {_ranges([(c.noise, c.unit) for c in members])}",
+            f"at a bound up to {100 * max(c.saturated for c in members):.2g} %"
             if max(c.saturated for c in members) > 0.005
             else "",
         ]
         lines.append(", ".join(part for part in parts if part))
     return lines
+
+
+def _ranges(sizes: Sequence[tuple[float, str]]) -> str:
+    """Sizes from the least to the largest, in each unit: `5e-06 m and 0.0002 .. 0.0004 rad`."""
+    by_unit: dict[str, list[float]] = {}
+    for size, unit in sizes:
+        by_unit.setdefault(unit, []).append(size)
+    texts = []
+    for unit, values in by_unit.items():
+        ends = dict.fromkeys(f"{end:.2g}" for end in (min(values), max(values)))
+        texts.append(f"{' .. '.join(ends)} {unit}".rstrip())
+    return " and ".join(texts)
 
 
 def gap_text(gap: Gap, most: int = 12) -> str:
@@ -108,15 +119,17 @@ def gap_text(gap: Gap, most: int = 12) -> str:
     lines += [f"note: {note}" for note in gap.notes]
     for signal in dict.fromkeys(row.signal for row in gap.rows):
         rows = sorted(gap.select(signal), key=lambda row: -row.excess)
+        units = sorted({row.unit for row in rows})
+        mixed = len(units) > 1
         lines += [
             "",
-            f"{signal} [{rows[0].unit}]",
+            f"{signal} [{', '.join(units)}]",
             f"  {'place':<24} {'gap':>10} {'noise':>10} {'excess':>10} {'share':>7}",
         ]
         titles = _titles([{"location": row.location, "kind": row.kind} for row in rows])
         lines += [
             f"  {titles[row.kind, row.location]:<24} {row.gap:>10.4g} {row.floor:>10.4g} "
-            f"{row.excess:>10.4g} {100 * row.share:>6.0f}%"
+            f"{row.excess:>10.4g} {100 * row.share:>6.0f}%{f'  {row.unit}' if mixed else ''}"
             for row in rows[:most]
         ]
         if len(rows) > most:
@@ -136,32 +149,6 @@ def gap_text(gap: Gap, most: int = 12) -> str:
     return "\n".join(lines)
 
 
-def chosen(
-    effect: str, parameters: Mapping[str, Mapping[str, Any]]
-) -> list[tuple[str, Mapping[str, Any], str]]:
-    """List parameters by name, with words for those that are a choice.
-
-    Args:
-        effect: its identifier.
-        parameters: values by name, as `diagnosis.json` holds them.
-
-    Returns:
-        Name, value and words of each parameter; the words are empty for a number.
-    """
-    choices = {p.name: p.choices for p in EFFECTS[effect].parameters}
-    rows = []
-    for name, value in parameters.items():
-        words = choices.get(name, ())
-        rows.append(
-            (
-                name,
-                value,
-                words[min(max(round(float(value["value"])), 0), len(words) - 1)] if words else "",
-            )
-        )
-    return rows
-
-
 def sensitivity_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
     """Tabulate the smallest changes that the logs would have shown.
 
@@ -169,14 +156,15 @@ def sensitivity_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str, str, 
         diagnosis: as `diagnosis.json` holds it.
 
     Returns:
-        For each parameter of each effect: effect, parameter, where the change is least and where it
-        is most.
+        For each parameter of each effect, and each unit that it has: effect, parameter, where the
+        change is least and where it is most.
     """
-    groups: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+    groups: dict[tuple[str, str, str], list[Mapping[str, Any]]] = {}
     for entry in diagnosis.get("sensitivity", ()):
-        groups.setdefault((str(entry["effect"]), str(entry["parameter"])), []).append(entry)
+        key = str(entry["effect"]), str(entry["parameter"]), str(entry["unit"])
+        groups.setdefault(key, []).append(entry)
     rows = []
-    for (effect, parameter), members in groups.items():
+    for (effect, parameter, _), members in groups.items():
         ordered = sorted(members, key=lambda entry: float(entry["change"]))
         least, most = (
             f"{change_text(entry)} at {entry['location']}" for entry in (ordered[0], ordered[-1])
@@ -230,19 +218,9 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
         ("model lacks", lacks),
     )
     for title, rows in groups:
-        for row in rows:
-            words = ", ".join(
-                choice
-                or f"{n} {p['value']:.4g} {p['unit']} ({p['low']:.4g} .. {p['high']:.4g})".replace(
-                    "  ", " "
-                )
-                for n, p, choice in chosen(row["effect"], row["parameters"])
-            )
-            closes = f", closes {100 * row['closed']:.0f} %" if title == "cause" else ""
-            lines.append(
-                f"  {title} {row['effect']} at {row['location']}: p {row['probability']:.2f}"
-                f"{closes}; {words}"
-            )
+        collapsed = together(rows) if title != "rival" else [[row] for row in rows]
+        for group in collapsed:
+            lines += _cause_lines(title, group)
     if remainder := diagnosis.get("remainder"):
         lines.append(f"  remainder: {100 * remainder:.0f} % of the gap, which no effect explains")
     lines += [
@@ -271,6 +249,32 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     if diagnosis["separating_experiment"]:
         lines.append(f"  to tell them apart: {_experiment(diagnosis['separating_experiment'])}")
     return "\n".join(lines)
+
+
+def _cause_lines(title: str, group: Sequence[Mapping[str, Any]]) -> list[str]:
+    """One line for a cause, or for an effect at several places, and their names where the line only
+    counts them.
+    """
+    words = ", ".join(
+        span.words
+        or f"{span.name} {span_text(span.least, span.most, 4, '..')} {span.unit} "
+        f"({span_text(span.low, span.high, 4, '..')})".replace("  ", " ")
+        for span in spans(group)
+    )
+    closes = ""
+    if title == "cause":
+        ends = dict.fromkeys(f"{100 * row['closed']:.0f}" for row in sorted(group, key=_closed))
+        ends = dict.fromkeys([next(iter(ends)), [*ends][-1]])
+        closes = f", closes {' .. '.join(ends)} %{' each' if len(group) > 1 else ''}"
+    probability = min(float(row["probability"]) for row in group)
+    where = places(group)
+    line = f"  {title} {group[0]['effect']} at {where}: p {probability:.2f}{closes}; {words}"
+    names = ", ".join(str(row["location"]) for row in group)
+    return [line] if where == names else [line, f"    at {names}"]
+
+
+def _closed(cause: Mapping[str, Any]) -> float:
+    return float(cause["closed"])
 
 
 def beyond_references(diagnosis: Mapping[str, Any]) -> list[str]:
@@ -322,11 +326,17 @@ def replayed_text(rows: Sequence[Replayed]) -> str:
     if not rows:
         return ""
     wide = max(len(r.joint) for r in rows)
+    units = list(dict.fromkeys(f"m{r.unit}" for r in rows))
+    mixed = len(units) > 1
     lines = [
         f"replayed over {rows[0].windows} short windows, following each log's {rows[0].follows}; "
-        f"error of position [mrad]:"
+        f"error of position [{', '.join(units)}]:"
     ]
-    lines += [f"  {r.joint:{wide}}  {1e3 * r.before:8.3g} -> {1e3 * r.after:8.3g}" for r in rows]
+    lines += [
+        f"  {r.joint:{wide}}  {1e3 * r.before:8.3g} -> {1e3 * r.after:8.3g}"
+        f"{f' m{r.unit}' if mixed else ''}"
+        for r in rows
+    ]
     return "\n".join(lines)
 
 

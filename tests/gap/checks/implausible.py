@@ -1,5 +1,7 @@
 """A robot of two joints, and what is implausible in its logs."""
 
+from types import SimpleNamespace
+
 import numpy as np
 
 from hyperleg_design.gap.checks.plausibility import implausible
@@ -12,6 +14,7 @@ class Robot:
     joints = motors = motor_aliases = ("hip", "knee")
     motor_from_joint, motor_scale = np.eye(2), {}
     position_low, position_high = np.array([-1.0, -1.0]), np.array([1.0, 1.0])
+    tree = SimpleNamespace(hinge=np.array([True, False]))
 
 
 def errors(log, subject=None):

@@ -4,9 +4,24 @@ import numpy as np
 from rig import rig_log, spoiled
 
 from hyperleg_design.gap.checks.excitation import excitation_of, motion_of
+from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
+
+
+def robot(**changes):
+    """As much of a subject of two joints as this looks at."""
+    tree = SimpleNamespace(
+        count=2,
+        hinge=np.ones(2, bool),
+        chain=lambda joint: [joint],
+        rotation=np.stack([np.eye(3)] * 2),
+    )
+    facts = {"joints": ("hip", "knee"), "motors": ("hip", "knee"), "motor_aliases": ("hip", "knee")}
+    facts |= {"gains": np.full((2, 2), np.nan), "floating": False, "spring": np.zeros(2)}
+    facts |= {"gravity": np.array([0.0, -9.81, 0.0]), "tree": tree}
+    return SimpleNamespace(**facts | changes)
 
 
 def of(log):
@@ -49,12 +64,7 @@ def test_torques_count_under_the_motors_own_names():
         kind, _, joint = name.partition("/")
         renamed[f"{kind}/{own[joint]}" if kind.startswith("motor") else name] = values
     log = log.changed(signals=renamed)
-    subject = SimpleNamespace(
-        joints=("hip", "knee"),
-        motors=("hip", "knee"),
-        motor_aliases=("m1", "m2"),
-        gains=np.full((2, 2), np.nan),
-    )
+    subject = robot(motor_aliases=("m1", "m2"))
     assert not motion_of(log, None).measured.any()
     assert motion_of(log, subject).measured.all()
 
@@ -129,3 +139,36 @@ def test_temperature_voltage_and_ground():
     assert found["ground_compliance"].where == ("foot",)
     assert not found["ground_friction"].shown
     assert found["imu_bias"].where == ("gyro",)
+
+
+def test_metres_of_a_slide_count_over_a_lever():
+    log, sliding = rig_log(), robot()
+    sliding.tree.hinge = np.array([False, True])
+    turns, slides = motion_of(log, robot()), motion_of(log, sliding)
+    for name in ("swing", "acceleration"):
+        ratio = getattr(slides, name) / getattr(turns, name)
+        np.testing.assert_allclose(ratio, [1 / RULES.motion.lever, 1.0])
+    np.testing.assert_array_equal(turns.posture, [True, True])
+    np.testing.assert_array_equal(slides.posture, [False, True])
+    np.testing.assert_array_equal(slides.turning, [False, True])
+
+
+def test_the_zero_of_a_slide_that_nothing_turns_does_not_show():
+    sliding = robot(gains=np.ones((2, 2)))
+    sliding.tree.hinge = np.array([False, True])
+    found = {e.effect: e for e in excitation_of(rig_log(), sliding)}
+    for effect in ("encoder_offset", "link_com"):
+        assert found[effect].where == ("knee",)
+    assert found["joint_spring"].where == ("hip", "knee")
+
+
+def test_the_acceleration_of_a_slow_swing_is_that_of_its_sine():
+    time = np.arange(4000) * 0.005
+    log = Log("run", time, {"position/hip": 0.5 * np.sin(3 * time)}, Metadata())
+    acceleration = motion_of(log, None).acceleration
+    # exceeded for a twentieth of the time by a sine: cos(pi / 40) of its amplitude
+    np.testing.assert_allclose(acceleration, 0.5 * 3**2 * np.cos(np.pi / 40), rtol=0.01)
+    without = {"motor_torque/hip": np.cos(3 * time)}
+    found = {e.effect: e for e in excitation_of(log.changed(signals=log.signals | without))}
+    assert found["rotor_inertia"].shown
+    assert not found["controller_gain"].shown

@@ -25,8 +25,11 @@ FLAGS = st.lists(st.booleans(), min_size=3, max_size=3).map(np.array)
 def motion(**changes) -> Motion:
     """Of three joints that move in all ways."""
     full = np.full(3, 1e3)
-    facts = dict.fromkeys(("reversals", "spread", "swing", "content", "command", "slow"), full)
-    known = {name: np.ones(3, bool) for name in ("torque", "measured", "asked")}
+    facts = dict.fromkeys(
+        ("reversals", "spread", "swing", "acceleration", "content", "command", "slow"), full
+    )
+    names = ("torque", "measured", "asked", "steered", "posture", "turning")
+    known = {name: np.ones(3, bool) for name in names}
     return Motion(joints=JOINTS, **(facts | known | changes))
 
 
@@ -45,6 +48,17 @@ def test_joints_show_what_they_pass_where_their_torque_is_known(passed, torque):
         assert "forces are unknown" in found.why
     else:
         assert found.why == ("good" if expected else "lacking")
+
+
+@given(FLAGS, FLAGS)
+def test_gains_show_by_targets_alone_whatever_commands_are_logged(passed, steered):
+    asked = motion(asked=np.ones(3, bool), steered=steered)
+    found = shown_by("gain", need(passed, asked=True, steered=True), None, asked)
+    assert found.where == tuple(
+        j for j, p, s in zip(JOINTS, passed, steered, strict=True) if p and s
+    )
+    if not steered.any():
+        assert found.why == "no targets with gains: what the controller asked for is unknown"
 
 
 @given(FLAGS, FLAGS, FLAGS)

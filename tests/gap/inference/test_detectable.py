@@ -76,6 +76,18 @@ def test_what_is_wrong_is_larger_than_what_would_have_been_named(sizes):
     assert least["coulomb_friction", "hip"] < 0.8
 
 
+def test_a_gap_that_causes_explain_hides_nothing(search, sizes):
+    """Beside no cause, the friction at the knee counts as discrepancy there."""
+    explained = search.result().best
+    assert ("viscous_friction", "knee", False) in explained.names
+    mended = {(one.effect, one.location): one.change for one in detectable(search, explained)}
+    for one in sizes:
+        if one.location == "knee":
+            assert mended[one.effect, one.location] < 0.9 * one.change
+    place = [cause.name for cause in explained.causes].index(("viscous_friction", "knee"))
+    assert mended["viscous_friction", "knee"] < explained.values(place)[0]
+
+
 def test_less_likely_causes_must_be_larger(search, exact):
     doubtful = type(search).__new__(type(search))
     cause = replace(search.rules.cause, probability=0.01)

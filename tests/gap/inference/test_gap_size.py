@@ -8,19 +8,32 @@ from hyperleg_design.gap.inference.gap_size import GapSize
 COUNT = 40
 
 
-def size(before, after, noise, residuals=("motion", "motion"), shown=None):
+def size(before, after, noise, residuals=("motion", "motion"), shown=None, hinge=(True, True)):
     """Of channels of the same number of samples, whose squares are given; causes show in all, or in
     those that are `shown`.
     """
     number = len(residuals) * COUNT
     channels = tuple(
-        SimpleNamespace(residual=kind, under_test=np.arange(i * COUNT, (i + 1) * COUNT))
+        SimpleNamespace(
+            residual=kind, name=f"joint_{i}", under_test=np.arange(i * COUNT, (i + 1) * COUNT)
+        )
         for i, kind in enumerate(residuals)
     )
     samples = SimpleNamespace(share=np.ones(number), floor=np.full(number, 0.25))
     tests = SimpleNamespace(value=np.zeros(number), block=np.arange(number) % 8)
+    subject = SimpleNamespace(
+        joints=("joint_0", "joint_1"),
+        motors=("joint_0", "joint_1"),
+        joint_from_motor=np.eye(2),
+        tree=SimpleNamespace(hinge=np.array(hinge)),
+    )
+    signals = (SimpleNamespace(subject=subject),)
     evidence = SimpleNamespace(
-        channels=channels, samples=samples, tests=tests, weight=np.full(number, 4.0)
+        signals=signals,
+        channels=channels,
+        samples=samples,
+        tests=tests,
+        weight=np.full(number, 4.0),
     )
     spread = lambda squares: np.repeat(np.sqrt(squares), COUNT) / 4.0  # noqa: E731
     trace = np.repeat(np.ones(len(residuals)) if shown is None else np.array(shown, float), COUNT)
@@ -59,6 +72,14 @@ def test_only_channels_in_the_unit_of_the_largest_excess_count():
     found = size([9.0, 25.0, 16.0], [1.0, 1.0, 1.0], [1.0] * 3, ("motion", "transmission", "drive"))
     assert found.counts.tolist() == [False, True, False]
     assert found.unit == "rad/s"
+
+
+def test_the_unit_is_that_of_the_joints_that_count():
+    large, small = [25.0, 1.0], [1.0, 1.0]
+    for hinge, unit in ((False, True), "N"), ((True, False), "Nm"):
+        assert size(large, small, small, hinge=hinge).unit == unit
+    assert size([25.0, 25.0], small, small, hinge=(False, True)).unit == "N, Nm"
+    assert size(large, small, small, ("transmission",) * 2, hinge=(False, True)).unit == "m/s"
 
 
 def test_a_part_of_the_causes_closes_its_own_share():

@@ -8,10 +8,17 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.intervals import NORMAL, intervals
 
-SUBJECT = SimpleNamespace(joints=("swing",), default=np.zeros(1))
+SUBJECT = SimpleNamespace(
+    joints=("swing",),
+    motors=("swing",),
+    default=np.zeros(1),
+    joint_from_motor=np.eye(1),
+    tree=SimpleNamespace(hinge=np.array([True])),
+)
+SLIDE = SimpleNamespace(**vars(SUBJECT) | {"tree": SimpleNamespace(hinge=np.array([False]))})
 
 
-def values_of(effect, values, deviation, torque_error=0.0):
+def values_of(effect, values, deviation, torque_error=0.0, subject=SUBJECT):
     """Intervals of one cause with given values and standard deviations of its parameters."""
     one = EFFECTS[effect]
     count = len(one.nulls)
@@ -30,7 +37,7 @@ def values_of(effect, values, deviation, torque_error=0.0):
         none,
         True,
     )
-    return intervals(cause, np.array(values), np.array(deviation), SUBJECT, torque_error)
+    return intervals(cause, np.array(values), np.array(deviation), subject, torque_error)
 
 
 def test_a_limit_is_told_with_the_interval_of_its_inverse():
@@ -39,6 +46,28 @@ def test_a_limit_is_told_with_the_interval_of_its_inverse():
     assert (limit.value, limit.unit) == (2.0, "Nm")
     assert limit.low == pytest.approx(1 / inverse.high)
     assert limit.high == pytest.approx(1 / inverse.low)
+
+
+def test_a_joint_that_slides_has_forces_and_lengths():
+    turning = values_of("joint_spring", [2.0, 1.0], [0.1, 0.2])
+    sliding = values_of("joint_spring", [2.0, 1.0], [0.1, 0.2], subject=SLIDE)
+    assert [one.unit for one in turning.values()] == ["Nm/rad", "Nm", "rad"]
+    assert [one.unit for one in sliding.values()] == ["N/m", "N", "m"]
+    assert [one.value for one in sliding.values()] == [one.value for one in turning.values()]
+    assert values_of("rotor_inertia", [2.0], [0.1], subject=SLIDE)["inertia"].unit == "kg"
+
+
+def test_a_motor_of_a_slide_has_a_limit_of_force():
+    sliding = values_of("torque_saturation", [0.5], [0.05], subject=SLIDE)
+    assert [one.unit for one in sliding.values()] == ["1/N", "N"]
+
+
+def test_a_scale_of_all_torques_widens_forces_too():
+    narrow, wide = (
+        values_of("coulomb_friction", [3.0], [0.1], error, SLIDE)["torque"] for error in (0.0, 0.1)
+    )
+    assert wide.high - wide.value == pytest.approx(NORMAL * np.hypot(0.1, 0.3))
+    assert narrow.high - narrow.value == pytest.approx(NORMAL * 0.1)
 
 
 def test_what_is_infinite_is_not_told():

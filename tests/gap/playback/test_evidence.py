@@ -47,6 +47,7 @@ def test_the_true_cause_explains_and_another_does_not(signals: Signals) -> None:
     assert root_mean_square(wrong.after)[0] > 0.9 * before
     np.testing.assert_array_equal(nothing.after, nothing.before)
     assert right.rows == ("swing",)
+    assert (right.units, right.speed_units) == (("Nm",), ("rad/s",))
     assert right.worst == 0
 
 
@@ -60,7 +61,7 @@ def test_what_the_references_show_already_is_taken_off(signals: Signals) -> None
 
 def test_the_row_that_is_drawn_is_the_one_that_causes_explain():
     """A larger residual elsewhere is another matter, unless nothing is explained."""
-    before = np.tile([3.0, 1.0], (5, 1))
+    before, units = np.tile([3.0, 1.0], (5, 1)), (("Nm",) * 2, ("rad/s",) * 2)
     one = Evidence(
         "log",
         "motion",
@@ -69,8 +70,16 @@ def test_the_row_that_is_drawn_is_the_one_that_causes_explain():
         before,
         np.tile([0.0, 0.5], (5, 1)),
         np.zeros((5, 2)),
+        *units,
     )
     nothing = Evidence(
-        "log", "motion", ("hip", "knee"), np.arange(5.0), before, np.zeros((5, 2)), np.zeros((5, 2))
+        "log",
+        "motion",
+        ("hip", "knee"),
+        np.arange(5.0),
+        before,
+        np.zeros((5, 2)),
+        np.zeros((5, 2)),
+        *units,
     )
     assert (one.worst, nothing.worst) == (1, 0)

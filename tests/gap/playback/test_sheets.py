@@ -105,6 +105,6 @@ def test_predictions_of_a_robot_without_a_gap_leave_little(signals):
     assert {("torque", "joint"), ("position", "joint"), ("velocity", "joint")} <= set(found)
     for quantity in ("position", "velocity"):
         sheet = found[quantity, "joint"]
-        assert sheet.unit == {"position": "rad", "velocity": "rad/s"}[quantity]
+        assert sheet.units == ({"position": "rad", "velocity": "rad/s"}[quantity],)
         assert sheet.bands == {}
         assert root_mean_square(sheet.residual)[0] < 0.01 * sheet.size[0]

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from hyperleg_design.report.gap.run import Run
 from hyperleg_design.report.gap.sentences import (
     cause_row,
     joined,
@@ -35,8 +36,11 @@ FRICTION = [cause("coulomb_friction", place, torque=(0.2, "Nm")) for place in "a
 
 def test_one_effect_at_several_places_is_said_once() -> None:
     assert phrase(FRICTION[:1]) == "Coulomb friction at a (torque 0.2 Nm)"
-    assert phrase(FRICTION[:3]) == "Coulomb friction at a, b and c"
-    assert phrase(FRICTION) == "Coulomb friction at 4 places"
+    assert phrase(FRICTION[:3]) == "Coulomb friction at a, b and c (torque 0.2 Nm)"
+    many = [cause("coulomb_friction", f"j{i}", torque=(0.1 * i, "Nm")) for i in range(1, 7)]
+    assert phrase(many) == "Coulomb friction at 6 joints (torque 0.1 to 0.6 Nm)"
+    mixed = [*FRICTION[:2], cause("coulomb_friction", "slide", torque=(3.0, "N"))]
+    assert phrase(mixed) == "Coulomb friction at a, b and slide"
     both = [FRICTION[0], cause("rotor_inertia", "b", inertia=(0.01, "kg m^2"))]
     assert phrase(both) == (
         "Coulomb friction at a (torque 0.2 Nm) and rotor inertia at b (inertia 0.01 kg m²)"
@@ -50,6 +54,8 @@ def test_each_verdict_is_one_sentence() -> None:
     assert verdict_sentence(diagnosis("explained", FRICTION[:2])) == (
         "Coulomb friction at a (torque 0.2 Nm) and b (torque 0.2 Nm) explain the gap."
     )
+    everywhere = verdict_sentence(diagnosis("explained", FRICTION))
+    assert everywhere == "Coulomb friction at a, b, c and d (torque 0.2 Nm) explains the gap."
     pair = [[{"effect": "payload", "location": "arm"}, {"effect": "imu_bias", "location": "gyro"}]]
     assert verdict_sentence(diagnosis("ambiguous", FRICTION[:1], equivalent=pair)) == (
         "Either payload at arm or IMU bias at gyro: these logs cannot tell which."
@@ -76,6 +82,31 @@ def test_steps_go_with_the_verdict() -> None:
     assert [command.split()[2] for _, command in next_steps(diagnosis("unknown", []))] == [
         "diagnose",
         "excite",
+    ]
+
+
+def test_commands_hold_the_paths_of_the_run() -> None:
+    run = Run("my arm.xml", ("a.parquet", "b.parquet"), "results/gap")
+    ((_, command),) = next_steps(diagnosis("explained", FRICTION), run)
+    assert command == (
+        "hyperleg gap apply results/gap --robot 'my arm.xml' --logs OTHER_LOG "
+        "--out results/gap_overlay.yaml"
+    )
+    commands = [command for _, command in next_steps(diagnosis("unknown", []), run)]
+    assert commands == [
+        "hyperleg gap diagnose --robot 'my arm.xml' --logs a.parquet b.parquet "
+        "--reference HEALTHY_LOG --out results/gap_with_reference",
+        "hyperleg gap excite --robot 'my arm.xml' --out motions",
+    ]
+
+
+def test_a_row_of_many_places_has_the_range_of_each_value() -> None:
+    many = [cause("torque_constant", f"m{i}", scale=(0.1 * i, "")) for i in range(5, 10)]
+    many[0]["closed"], many[1]["probability"] = 0.2, 0.7
+    row = cause_row(*many)
+    assert (row.location, row.closed, row.probability) == ("5 motors", "20 % to 50 % each", "0.70")
+    assert [(v.name, v.value, v.interval) for v in row.values] == [
+        ("scale", "0.5 to 0.9", "0.45 to 0.99")
     ]
 
 

@@ -1,9 +1,18 @@
+from dataclasses import replace
+
 import numpy as np
 
 from hyperleg_design.gap.checks.check import check_log
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.report.gap.text import checks_text, diagnosis_text
+from hyperleg_design.gap.logs.sampling import Column
+from hyperleg_design.gap.playback.added import Replayed
+from hyperleg_design.report.gap.text import (
+    checks_text,
+    diagnosis_text,
+    replayed_text,
+    sensitivity_rows,
+)
 
 
 def log(**metadata):
@@ -28,6 +37,20 @@ def test_what_a_log_can_and_cannot_show():
     assert "  cannot  imu_bias: no gyroscope and no accelerometer" in lines
     assert lines[-1] == "  fit for a diagnosis"
     assert len([line for line in lines if line.startswith(("  shows", "  cannot"))]) == 24
+
+
+def test_signals_of_unlike_joints_have_ranges_in_each_unit():
+    sizes = ((5e-6, "m"), (2e-4, "rad"), (4e-4, "rad"), (0.0, "rad"))
+    columns = [
+        Column(f"position/{i}", 200.0, 0.0, -1.0, 1.0, step, 2 * step + 1e-7, 0.0, False, 1, unit)
+        for i, (step, unit) in enumerate(sizes)
+    ]
+    check = replace(check_log(log()), columns=tuple(columns))
+    (line,) = (one for one in checks_text([check]).splitlines() if one.startswith("  signals"))
+    assert line == (
+        "  signals position (4), 200 Hz, steps of 5e-06 m and 0.0002 .. 0.0004 rad, "
+        "noise 1e-05 m and 1e-07 .. 0.0008 rad"
+    )
 
 
 def test_errors_and_remarks():
@@ -92,6 +115,49 @@ def test_an_answer_states_units_likely_rivals_and_the_experiment_as_a_sentence()
         "  to tell them apart: chirp (2 min): sweep the joint; it separates torque_constant at "
         "knee from transmission_ratio at knee"
     )
+
+
+def test_one_effect_at_many_places_is_one_line_with_its_places():
+    (cause,) = diagnosis()["causes"]
+    scales = {
+        f"m{i}": {"value": 0.8 + i / 1000, "low": 0.7, "high": 0.9, "unit": ""} for i in range(6)
+    }
+    causes = [
+        {**cause, "location": name, "closed": 0.2, "parameters": {"scale": scale}}
+        for name, scale in scales.items()
+    ]
+    lines = diagnosis_text(diagnosis(causes=causes)).splitlines()
+    place = lines.index(
+        "  cause torque_constant at 6 motors: p 0.90, closes 20 % each; "
+        "scale 0.8 .. 0.805 (0.7 .. 0.9)"
+    )
+    assert lines[place + 1] == "    at m0, m1, m2, m3, m4, m5"
+    two = diagnosis_text(diagnosis(causes=causes[:2]))
+    assert two.count("  cause torque_constant at") == 2
+
+
+def test_smallest_changes_stay_in_their_own_units():
+    entries = [
+        {"effect": "joint_spring", "location": place, "parameter": "stiffness", "change": size}
+        | {"unit": unit}
+        for place, size, unit in (
+            ("ankle", 0.13, "Nm/rad"),
+            ("rail", 0.5, "N/m"),
+            ("hip", 0.76, "Nm/rad"),
+        )
+    ]
+    assert sensitivity_rows({"sensitivity": entries}) == [
+        ("joint_spring", "stiffness", "0.13 Nm/rad at ankle", "0.76 Nm/rad at hip"),
+        ("joint_spring", "stiffness", "0.5 N/m at rail", ""),
+    ]
+
+
+def test_errors_of_slides_are_lengths():
+    rows = [Replayed("hip", "rad", 0.002, 0.001, 5, "torque")]
+    assert "error of position [mrad]:" in replayed_text(rows)
+    both = replayed_text([*rows, Replayed("rail", "m", 0.004, 0.003, 5, "torque")])
+    assert "error of position [mrad, mm]:" in both
+    assert both.endswith("3 mm")
 
 
 def test_what_references_lack_and_what_remains_is_told():

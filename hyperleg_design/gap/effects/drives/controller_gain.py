@@ -51,7 +51,9 @@ class ControllerGain(JointEffect):
         Parameter("stiffness_scale", "", 1.0, 0.1, 5.0, 0.2, STIFFNESS_SCALE_SOURCE, spread=0.015),
         Parameter("damping_scale", "", 1.0, 0.0, 5.0, 0.2, "as the stiffness", spread=0.015),
     )
-    needs: ClassVar[Need] = replace(SWINGING, good="targets, gains and motion", asked=True)
+    needs: ClassVar[Need] = replace(
+        SWINGING, good="targets, gains and motion", asked=True, steered=True
+    )
     told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "log torque or current": BEYOND_COMMANDS,
         "several amplitudes": FRICTION - {"viscous_friction"} | {"backlash", "torque_saturation"},

@@ -29,6 +29,8 @@ OF_ITS_JOINT = 0.03
 """Inertia of a rotor over that of its joint, likewise and at least (assumed)."""
 CONTENT = 1.0
 """Content of the motion from which a rotor's inertia shows [Hz]."""
+LEAST_ACCELERATION = 2.0
+"""Acceleration from which it shows in slower motion, too [rad/s^2] (assumed)."""
 OF_ROTOR, OF_JOINT = 0.06, 0.01
 """Usual error over the rotor's inertia and over that of its joint."""
 SOURCE = "0.03-0.1 kg m^2 reflected on leg joints; `usual` knows the motor's side"
@@ -51,7 +53,10 @@ class RotorInertia(MotorTorque):
     )
     linear: ClassVar[bool] = True
     needs: ClassVar[Need] = Need(
-        lambda motion: motion.reversing & (motion.content > CONTENT),
+        lambda motion: (
+            motion.reversing
+            & ((motion.content > CONTENT) | (motion.acceleration > LEAST_ACCELERATION))
+        ),
         "motion accelerates",
         "hardly any acceleration",
     )

@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 from typing_extensions import override
 
+from hyperleg_design.gap.effects.excitation import SWINGING, Need
 from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.links.inertial import MomentsEffect, OwnInertiaEffect
 from hyperleg_design.gap.effects.parameter import Parameter
@@ -33,6 +34,11 @@ class LinkCom(OwnInertiaEffect, MomentsEffect):
     summary: ClassVar[str] = "a link's centre of mass is elsewhere than modelled"
     parameters: ClassVar[tuple[Parameter, ...]] = tuple(
         Parameter(axis, "m", 0.0, -0.3, 0.3, 0.01, SOURCE) for axis in "xyz"
+    )
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.swinging & motion.turning,
+        SWINGING.good,
+        f"{SWINGING.lacking} that turns a link",
     )
     told_apart: ClassVar[Mapping[str, Set[str]]] = {"several postures": INERTIAL}
 

@@ -52,7 +52,11 @@ class EncoderOffset(JointEffect):
         Parameter("offset", "rad", 0.0, -0.3, 0.3, 0.03, SOURCE, spread=0.003),
     )
     hooks: ClassVar[type[JointHooks]] = _Shifted
-    needs: ClassVar[Need] = SWINGING
+    needs: ClassVar[Need] = Need(
+        lambda motion: motion.swinging & motion.posture,
+        SWINGING.good,
+        f"{SWINGING.lacking} that changes torques",
+    )
     told_apart: ClassVar[Mapping[str, Set[str]]] = {
         "several postures": INERTIAL | {"imu_bias", "joint_spring", "torque_constant"}
     }
