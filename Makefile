@@ -35,7 +35,7 @@ test: $(VENV)/.learning  ## All tests but the slow ones, style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 	$(BIN)/python -m pytest -m "not slow" -n 2
 
 test-all: $(VENV)/.learning  ## The slow ones too
@@ -47,7 +47,7 @@ lint: $(VENV)/.ready  ## Style and types
 	$(BIN)/mypy
 
 docs: $(VENV)/.ready  ## The documentation as a site, in site/; a warning is an error
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
 coverage: $(VENV)/.learning  ## The tests, and which lines none of them runs; TESTS="tests/robot tests/sizing" runs these folders only
 	$(BIN)/python -m pytest $(TESTS) -m "not slow" -n 2 --cov=hyperleg_design --cov-report=term:skip-covered --cov-report=html:results/coverage

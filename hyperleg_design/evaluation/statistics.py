@@ -243,7 +243,7 @@ def difference(
 
     Raises:
         InputError: no group, unequal numbers of seeds when paired, or a level or number of
-        resamples that makes no sense.
+            resamples that makes no sense.
     """
     _check(level, resamples)
     if paired:

@@ -85,7 +85,7 @@ def cluster(address: str) -> Iterator[Executor | None]:
 
     Raises:
         InputError: the extra `cluster` is not installed, nothing answers at the address, or the
-        scheduler has no workers.
+            scheduler has no workers.
     """
     if not address:
         yield None

@@ -52,7 +52,7 @@ class Log:
 
     Raises:
         InputError: a time base that does not rise strictly, an unknown column, or columns of
-        different lengths.
+            different lengths.
     """
 
     name: str
@@ -248,7 +248,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
 
     Raises:
         InputError: missing, truncated or empty file, no time, a column of texts, a clock that runs
-        backwards, bad metadata.
+            backwards, bad metadata.
     """
     import pyarrow
     import pyarrow.parquet

@@ -56,7 +56,7 @@ def diagnose(
 
     Raises:
         InputError: no log to diagnose, a log that is not fit for it, or one that does not go with
-        the robot.
+            the robot.
     """
     say = show or (lambda _: None)
     tests = [log for log in logs if log.metadata.role != "reference"]

@@ -75,7 +75,7 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
 
     Raises:
         InputError: names file, field, value and remedy; also for a task, design or preset that does
-        not exist.
+            not exist.
     """
     path = resources.find("sim", name, noun="campaign")
     data, where = read_yaml(path), short_name(path)
