@@ -106,13 +106,10 @@ def shrinking(
     """
     if not effect.stretched:
         return None
-    subject = samples.filtered_logs[0].signals.subject
-    motor = subject.motors.index(location)
-    joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
-    keys = [(row.residual_name, row.column) for row in samples.rows]
-    if ("motion", joint) not in keys:
+    at = moved_row(samples, location)
+    if at is None:
         return None
-    row = keys.index(("motion", joint))
+    motor, joint, row = at
     own = np.flatnonzero(samples.row == row)
     size = max(float(values[0] / usual[0]), SMALLEST)
     values = np.array([size * usual[0], *values[1:]])
@@ -124,6 +121,23 @@ def shrinking(
     slope, square = ((parts * each[:, group]).sum(0) / part for each in (slope, square))
     part, slope, square = part[own], slope[own] / size, square[own] / size**2
     return Shrinking(0, slope, square, part, samples.share[own], row)
+
+
+def moved_row(samples: Samples, location: str) -> tuple[int, int, int] | None:
+    """Find the row of motion that a motor moves most.
+
+    Args:
+        samples: of the logs.
+        location: name of the motor.
+
+    Returns:
+        Motor, joint and row; None where no log has the row.
+    """
+    subject = samples.filtered_logs[0].signals.subject
+    motor = subject.motors.index(location)
+    joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
+    rows = [(row.residual_name, row.column) for row in samples.rows]
+    return (motor, joint, rows.index(("motion", joint))) if ("motion", joint) in rows else None
 
 
 def _parts(samples: Samples, joint: int, kinds: Sequence[str]) -> np.ndarray:

@@ -15,7 +15,7 @@ import numpy as np
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.placing import is_measured
 from hyperleg_design.gap.inference.samples import Samples
-from hyperleg_design.gap.inference.shrinking import SMALLEST, Shrinking
+from hyperleg_design.gap.inference.shrinking import SMALLEST, Shrinking, moved_row
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import FilteredLog
 
@@ -41,20 +41,15 @@ def smoothing(
     """
     if not effect.lags:
         return None
-    subject = samples.filtered_logs[0].signals.subject
-    motor = subject.motors.index(location)
-    joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
-    rows = [(row.residual_name, row.column) for row in samples.rows]
-    if ("motion", joint) not in rows or any(
-        is_measured(log.signals, motor) for log in samples.filtered_logs
-    ):
+    at = moved_row(samples, location)
+    if at is None or any(is_measured(log.signals, at[0]) for log in samples.filtered_logs):
         return None
-    row = rows.index(("motion", joint))
+    _, joint, row = at
     parts = []
     for log, places in zip(samples.filtered_logs, samples.where, strict=True):
         own = [(each.residual_name, each.column) for each in log.rows]
-        if rows[row] in own:
-            place = own.index(rows[row])
+        if ("motion", joint) in own:
+            place = own.index(("motion", joint))
             parts.append(_asked(samples, log, place, places[place]))
     frequency, number = np.concatenate(parts, -1)
     size = max(float(values[0] / usual[0]), SMALLEST)
