@@ -25,7 +25,7 @@ from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import SLOWEST_BANDS, Samples, gather
 from hyperleg_design.gap.signals import filtering, resting
 from hyperleg_design.gap.signals.channels import applied
-from hyperleg_design.gap.signals.filtering import FilteredLog
+from hyperleg_design.gap.signals.filtering import FilteredLog, place_of
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import dry_friction
 
@@ -65,10 +65,10 @@ class Evidence:
             trace: that its parameter leaves, in all samples or in those under test `(S,)`.
             standing: whether it acts in all logs.
         """
-        rows = [(row.residual_name, row.column) for row in self.samples.rows]
         number, at = 0.0, factor.row  # rows of the tests are the first ones
         for channel, share, expected in zip(self.channels, self.moved, self.expected, strict=True):
-            row = rows.index((channel.residual, channel.column))
+            row = place_of(self.samples.rows, channel.residual, channel.column)
+            assert row is not None
             place = channel.samples if standing else channel.under_test
             others = not factor.alone and channel.residual in MOTORS
             if row == factor.row or (others and np.any(trace[place] != 0)):
@@ -153,8 +153,7 @@ class _Set:
         Returns:
             Its index; None where no log of this set has the channel.
         """
-        keys = [(row.residual_name, row.column) for row in self.samples.rows]
-        return keys.index(key) if key in keys else None
+        return place_of(self.samples.rows, *key)
 
     def shapes(self, key: tuple[str, int], waves: int) -> tuple[np.ndarray, np.ndarray, float]:
         """Compute the discrepancy shapes of a channel and their sizes.
@@ -170,10 +169,9 @@ class _Set:
         columns: np.ndarray | None = None
         squares, loads = [], []
         for filtered, places in zip(self.filtered_logs, self.samples.where, strict=True):
-            keys = [(row.residual_name, row.column) for row in filtered.rows]
-            if key not in keys:
+            place = place_of(filtered.rows, *key)
+            if place is None:
                 continue
-            place = keys.index(key)
             raw = shapes(filtered.signals, *key, waves)
             if columns is None:
                 columns = np.zeros((len(raw), len(self.samples.value)))
@@ -352,10 +350,9 @@ def _feigned(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarra
     whole, clean = 0.0, 0.0
     for one, columns in zip(sets, found, strict=True):
         for filtered, places in zip(one.filtered_logs, one.samples.where, strict=True):
-            keys = [(row.residual_name, row.column) for row in filtered.rows]
-            if key not in keys:
+            place = place_of(filtered.rows, *key)
+            if place is None:
                 continue
-            place = keys.index(key)
             torque = load(filtered.signals, *key)
             step = filtered.signals.step
             twice = np.gradient(np.gradient(np.nan_to_num(torque), step), step)

@@ -20,7 +20,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.placing import is_measured, motor_strength
+from hyperleg_design.gap.effects.placing import motor_strength
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.inference.shrinking import Shrinking, shrinking
 from hyperleg_design.gap.inference.smoothing import smoothing
@@ -152,8 +152,8 @@ def factors_of(
         motor = int(np.argmax(np.abs(subject.joint_from_motor[joint])))
     else:
         return ()
-    row = _row(samples, joint)
-    if row is None or (not scaling.scales_measured and _measured(samples, motor)):
+    row = samples.motion_row(joint)
+    if row is None or (not scaling.scales_measured and samples.measures(motor)):
         return ()
     number = float(samples.share[samples.row == row].sum())
     slopes = [_slope(s.signals, scaling, motor, joint) for s in samples.filtered_logs]
@@ -222,7 +222,7 @@ def _lost(
     """
     subject = samples.filtered_logs[0].signals.subject
     joints = np.argmax(np.abs(subject.joint_from_motor), 0)  # that each motor moves most
-    unmeasured = [motor for motor in range(len(joints)) if not _measured(samples, motor)]
+    unmeasured = [motor for motor in range(len(joints)) if not samples.measures(motor)]
     each = [
         _missing(log.signals, effect, location, settings, unmeasured, joints)
         for log in samples.filtered_logs
@@ -230,7 +230,7 @@ def _lost(
     missing = np.concatenate(each, -1)
     rows = []
     for joint in np.unique(joints[unmeasured]).tolist():
-        row = _row(samples, joint)
+        row = samples.motion_row(joint)
         lost = missing[joints[unmeasured] == joint].mean(0)
         if row is not None and lost.any():
             rows.append((row, float(samples.share[samples.row == row].sum()), lost))
@@ -262,17 +262,6 @@ def _missing(
         over = small * signals.subject.joint_from_motor[joint, motor]
         share[place] = (moved - rows)[:, ticks, joint] / over
     return np.clip(np.nan_to_num(share), 0.0, 1.0)
-
-
-def _row(samples: Samples, joint: int) -> int | None:
-    """Row of a joint's motion, if it has one."""
-    keys = [(row.residual_name, row.column) for row in samples.rows]
-    return keys.index(("motion", joint)) if ("motion", joint) in keys else None
-
-
-def _measured(samples: Samples, motor: int) -> bool:
-    """Whether a log measures the torque of a motor."""
-    return any(is_measured(log.signals, motor) for log in samples.filtered_logs)
 
 
 def _shows(samples: Samples, row: int, motor: int, joint: int) -> float:

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hyperleg_design.gap.signals.filtering import FilteredLog, Row, traced
+from hyperleg_design.gap.effects.placing import is_measured
+from hyperleg_design.gap.signals.filtering import FilteredLog, Row, place_of, traced
 from hyperleg_design.gap.signals.signals import Signals
 
 FOLDS = 5
@@ -75,6 +76,25 @@ class Samples:
     def weight(self) -> np.ndarray:
         """What samples are multiplied by before products are taken `(S,)`."""
         return np.asarray(np.sqrt(self.share) / self.floor)
+
+    def motion_row(self, joint: int) -> int | None:
+        """Find the motion of a joint.
+
+        Args:
+            joint: index of the joint.
+
+        Returns:
+            Its place in `rows`; None where no log has it.
+        """
+        return place_of(self.rows, "motion", joint)
+
+    def measures(self, motor: int) -> bool:
+        """Whether a log measures the torque of a motor.
+
+        Args:
+            motor: index of the motor.
+        """
+        return any(is_measured(log.signals, motor) for log in self.filtered_logs)
 
     def columns(
         self,

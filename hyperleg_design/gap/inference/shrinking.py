@@ -136,8 +136,8 @@ def moved_row(samples: Samples, location: str) -> tuple[int, int, int] | None:
     subject = samples.filtered_logs[0].signals.subject
     motor = subject.motors.index(location)
     joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
-    rows = [(row.residual_name, row.column) for row in samples.rows]
-    return (motor, joint, rows.index(("motion", joint))) if ("motion", joint) in rows else None
+    row = samples.motion_row(joint)
+    return None if row is None else (motor, joint, row)
 
 
 def _parts(samples: Samples, joint: int, kinds: Sequence[str]) -> np.ndarray:

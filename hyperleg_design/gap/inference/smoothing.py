@@ -13,11 +13,10 @@ from __future__ import annotations
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.placing import is_measured
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.inference.shrinking import SMALLEST, Shrinking, moved_row
 from hyperleg_design.gap.signals.channels import applied
-from hyperleg_design.gap.signals.filtering import FilteredLog
+from hyperleg_design.gap.signals.filtering import FilteredLog, place_of
 
 FREQUENCIES = 8
 """That stand for those of a band."""
@@ -42,14 +41,13 @@ def smoothing(
     if not effect.lags:
         return None
     at = moved_row(samples, location)
-    if at is None or any(is_measured(log.signals, at[0]) for log in samples.filtered_logs):
+    if at is None or samples.measures(at[0]):
         return None
     _, joint, row = at
     parts = []
     for log, places in zip(samples.filtered_logs, samples.where, strict=True):
-        own = [(each.residual_name, each.column) for each in log.rows]
-        if ("motion", joint) in own:
-            place = own.index(("motion", joint))
+        place = place_of(log.rows, "motion", joint)
+        if place is not None:
             parts.append(_asked(samples, log, place, places[place]))
     frequency, number = np.concatenate(parts, -1)
     size = max(float(values[0] / usual[0]), SMALLEST)

@@ -12,7 +12,7 @@ within one.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,6 +56,22 @@ class Row:
     """Joint, motor, foot and axis, or axis of the base."""
     cutoff: float
     """Frequency above which the row holds noise only [Hz]."""
+
+
+def place_of(rows: Sequence[Row], residual_name: str, column: int) -> int | None:
+    """Find a row of a residual among some rows.
+
+    Args:
+        rows: of one log, or of all.
+        residual_name: name of the residual, such as `motion`.
+        column: index of the row in its residual.
+
+    Returns:
+        Its place; None where it is not among them.
+    """
+    keys = [(row.residual_name, row.column) for row in rows]
+    key = residual_name, column
+    return keys.index(key) if key in keys else None
 
 
 @dataclass(frozen=True, eq=False)
