@@ -7,6 +7,7 @@ import robots
 
 from hyperleg_design.gap.inference.assembly import evidence_of
 from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 
@@ -97,3 +98,10 @@ def evidence(robot, *logs, references=()):
     """What causes are judged on."""
     signals = conditioned(robot, *logs, *references)
     return evidence_of(signals[: len(logs)], signals[len(logs) :], InferenceRules())
+
+
+def diagnosis(robot_files, kind: str, seeds=(0, 1), references=()):
+    """Diagnosis of two logs of the coupled rig, with logs of the healthy one from another day."""
+    logs = [run(kind, seed, session="today") for seed in seeds]
+    healthy = [run("healthy", seed, session="before", role="reference") for seed in references]
+    return diagnose(robot_files["coupled"], logs, healthy, threads=1)
