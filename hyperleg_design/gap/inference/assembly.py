@@ -52,7 +52,7 @@ class Evidence:
     expected: tuple[float, ...]
     """Independent numbers that the expected noise of each channel's references counts for."""
 
-    def paying(self, factor: Factor, trace: np.ndarray, standing: bool) -> Factor:
+    def with_numbers(self, factor: Factor, trace: np.ndarray, standing: bool) -> Factor:
         """What scaling torques costs, as far as they are no noise in the channels that are made of
         them; once, as these channels are made of the same torques, where most of them are.
 
@@ -84,19 +84,19 @@ class Evidence:
             cause: linearised on samples of this evidence.
 
         Returns:
-            The cause, with terms as of `paying`.
+            The cause, with terms as of `with_numbers`.
         """
         return replace(
             cause,
             factors=tuple(
-                self.paying(term, cause.columns[term.parameter], cause.standing)
+                self.with_numbers(term, cause.columns[term.parameter], cause.standing)
                 if isinstance(term, Factor)
                 else term
                 for term in cause.factors
             ),
         )
 
-    def acting(self, cause: Cause, standing: bool, only: np.ndarray | None = None) -> Cause:
+    def on_all_samples(self, cause: Cause, standing: bool, only: np.ndarray | None = None) -> Cause:
         """A cause whose columns are those of its own logs, with columns of all samples.
 
         Args:
@@ -294,7 +294,7 @@ def _channel(
     scale[size <= 0] = 0.0
     own_noise, moved = None, 1.0
     if key[0] == "motion":
-        own_noise, moved = _feigned(key, sets)
+        own_noise, moved = _placeholder(key, sets)
     white, cells = [], []
     for number, ((one, row), (columns, *_)) in enumerate(zip(parts, made, strict=True)):
         samples = one.samples
@@ -337,7 +337,7 @@ def _channel(
     ), moved
 
 
-def _feigned(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarray], float]:
+def _placeholder(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarray], float]:
     """Columns of the part of the load that is noise or vibration in each band, over all sets
     `(columns, S)` each, and the share of the numbers under test in which the drives' torque is no
     noise.

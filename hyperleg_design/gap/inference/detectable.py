@@ -17,8 +17,8 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS, UNLISTED
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.cause_prior import usual_error
+from hyperleg_design.gap.inference.effect_traces import NotJudged
 from hyperleg_design.gap.inference.hypothesis import Hypothesis
 from hyperleg_design.gap.inference.search import Search
 from hyperleg_design.gap.model.joint_units import unit_at
@@ -58,16 +58,16 @@ def detectable(search: Search, beside: Hypothesis | None = None) -> tuple[Detect
         Of each effect and place that the logs show: for each size of a linear effect, and for the
         size of a nonlinear one that has a single size.
     """
-    scales = (beside or search.fits.nothing).scales
+    scales = (beside or search.fits.null).scales
     subject = search.evidence.signals[0].subject
     entries: list[tuple[str, str, int, float, float, float]] = []
     for (name, place, standing), traced in search.traces.items():
-        if standing or isinstance(traced, screen.NotJudged) or name in UNLISTED:
+        if standing or isinstance(traced, NotJudged) or name in UNLISTED:
             continue
         effect = EFFECTS[name]
         most = np.abs(effect.bounds(place, subject) - effect.nulls).max(0)
         sizes = [i for i, p in enumerate(effect.parameters) if not p.shape]
-        information = search.promises.information((name, place, standing), scales)
+        information = search.proposer.information((name, place, standing), scales)
         if isinstance(traced, list):
             for i in sizes:
                 entries.append((name, place, i, traced[0].usual[i], most[i], information[i]))

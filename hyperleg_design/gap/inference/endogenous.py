@@ -161,7 +161,7 @@ def factors_of(
     return (Factor(0, slope, number, _shows(samples, row, motor, joint), row),)
 
 
-def held_back_whole(
+def held_back_in_all(
     samples: Samples, effect: Effect, location: str, values: np.ndarray
 ) -> list[Factor]:
     """As `held_back`, of the size of the whole trace at some values.

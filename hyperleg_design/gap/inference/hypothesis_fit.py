@@ -11,13 +11,13 @@ import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.families import IN_DRIVES, INERTIAL
-from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.cause_prior import log_prior
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scale_fit import STEPS, first_scales, fitted
 from hyperleg_design.gap.inference.channels.scales import Scales
+from hyperleg_design.gap.inference.effect_traces import NotJudged, Traces
 from hyperleg_design.gap.inference.endogenous import Factor, joined
 from hyperleg_design.gap.inference.hypothesis import (
     Candidate,
@@ -29,16 +29,18 @@ from hyperleg_design.gap.inference.hypothesis import (
     solve,
 )
 from hyperleg_design.gap.inference.interactions import after, carrying
-from hyperleg_design.gap.inference.promises import Promise
+from hyperleg_design.gap.inference.linearisation import linearise
+from hyperleg_design.gap.inference.proposals import Proposal
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import Samples
+from hyperleg_design.gap.inference.threads import spread
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 CLOSE = 0.02
 """Step of a nonlinear fit, over usual sizes, below which it has converged [-]."""
-EASED = 2.0
+SCALES_LIMIT = 2.0
 """Noise under test over a healthy robot's, in variance, and discrepancy, at most where causes are
 looked for [-]."""
 
@@ -50,7 +52,7 @@ class _Fitted:
     scales: tuple[Scales, ...]
     solution: Solution
     moved: np.ndarray
-    """Rows of causes that are not settled yet `(k,)` of bool."""
+    """Rows of causes that have not converged yet `(k,)` of bool."""
 
 
 class HypothesisFit:
@@ -70,7 +72,7 @@ class HypothesisFit:
         self,
         evidence: Evidence,
         rules: InferenceRules,
-        traces: Mapping[Name, screen.Traces],
+        traces: Mapping[Name, Traces],
         count: Mapping[str, int],
         threads: int = 1,
         only: np.ndarray | None = None,
@@ -79,49 +81,51 @@ class HypothesisFit:
         self.traces, self.count, self.only = traces, count, only
 
     @cached_property
-    def nothing(self) -> Hypothesis:
-        """No cause: noise and discrepancy alone."""
+    def null(self) -> Hypothesis:
+        """The null hypothesis: no cause, noise and discrepancy alone."""
         channels, rules = self.evidence.channels, self.rules
-        scales = screen.spread(
-            lambda one: fitted(one, first_scales(one, rules), rules), channels, self.threads
+        scales = spread(
+            lambda channel: fitted(channel, first_scales(channel, rules), rules),
+            channels,
+            self.threads,
         )
         prior = float(np.log(1 - rules.cause.probability))
         return Hypothesis((), np.zeros(0), np.zeros((0, 0)), tuple(scales), 0.0, prior)
 
     @cached_property
-    def ground(self) -> np.ndarray:
+    def null_log_posterior(self) -> np.ndarray:
         """Log posterior of each channel without any cause `(channels,)` [nat]."""
-        channels = zip(self.evidence.channels, self.nothing.scales, strict=True)
+        channels = zip(self.evidence.channels, self.null.scales, strict=True)
         return np.array([each.log_posterior(scales, self.rules) for each, scales in channels])
 
-    def candidate(self, promise: Promise, current: Hypothesis) -> Candidate | None:
+    def candidate(self, proposal: Proposal, current: Hypothesis) -> Candidate | None:
         """Linearise an effect where it fits best beside a hypothesis, by Gauss-Newton steps at
         fixed scales, halved where they lead to worse.
 
         Args:
-            promise: the effect, its place, and where the steps begin.
+            proposal: the effect, its place, and where the steps begin.
             current: the hypothesis.
 
         Returns:
             The candidate; None where no log shows it.
         """
-        traced = self.traces[promise.name]
+        traced = self.traces[proposal.name]
         if isinstance(traced, list):
-            return Candidate(promise.effect, promise.location, (traced[promise.variant],))
-        assert not isinstance(traced, screen.NotJudged)
-        effect = WEIGHED[promise.effect]
+            return Candidate(proposal.effect, proposal.location, (traced[proposal.variant],))
+        assert not isinstance(traced, NotJudged)
+        effect = WEIGHED[proposal.effect]
         subject = self.evidence.signals[0].subject
-        low, high = effect.bounds(promise.location, subject)
-        values = np.array(promise.values, float)
-        scales = eased(self.evidence, current.scales, self.rules)
-        everywhere = promise.standing or self.only is not None
+        low, high = effect.bounds(proposal.location, subject)
+        values = np.array(proposal.values, float)
+        scales = limited_scales(self.evidence, current.scales, self.rules)
+        everywhere = proposal.standing or self.only is not None
         samples = self.evidence.samples if everywhere else self.evidence.tests
         best: tuple[float, Cause] | None = None
         for _ in range(self.rules.search.steps):
-            cause = screen.linearise(samples, effect, promise.location, values)
+            cause = linearise(samples, effect, proposal.location, values)
             if cause is None:
                 break
-            cause = self.evidence.acting(cause, promise.standing, self.only)
+            cause = self.evidence.on_all_samples(cause, proposal.standing, self.only)
             stack = Stack.of((*current.causes, cause), self.evidence.weight)
             crossing = Crossing.of(self.evidence.channels, stack.rows)
             reached = self._reached(stack, crossing, scales, cause)
@@ -134,7 +138,7 @@ class HypothesisFit:
             if np.max(np.abs(move) / cause.usual) < CLOSE:
                 break
             values = values + move
-        return None if best is None else Candidate(promise.effect, promise.location, (best[1],))
+        return None if best is None else Candidate(proposal.effect, proposal.location, (best[1],))
 
     def _reached(
         self, stack: Stack, crossing: Crossing, scales: Sequence[Scales], cause: Cause
@@ -148,7 +152,7 @@ class HypothesisFit:
         paid = sum(term.log(solution.theta[place]) for place, term in joined(stack.factors))
         return solution.gain - solution.occam + paid
 
-    def settled(self, hypothesis: Hypothesis) -> Hypothesis:
+    def relinearised(self, hypothesis: Hypothesis) -> Hypothesis:
         """Linearise the causes of a hypothesis again at their estimates, and beside the causes that
         change what they act on (`interactions`), until both agree.
 
@@ -156,13 +160,13 @@ class HypothesisFit:
             hypothesis: fitted to causes that are linearised elsewhere.
         """
         for _ in range(self.rules.search.steps):
-            candidates = self._again(hypothesis)
+            candidates = self._relinearised_once(hypothesis)
             if candidates is None:
                 break
             hypothesis = self.fit(candidates, hypothesis.scales)
         return hypothesis
 
-    def _again(self, hypothesis: Hypothesis) -> tuple[Candidate, ...] | None:
+    def _relinearised_once(self, hypothesis: Hypothesis) -> tuple[Candidate, ...] | None:
         """Candidates linearised at their estimates, on what others leave; None where they are
         already.
         """
@@ -188,7 +192,7 @@ class HypothesisFit:
                 alike = cause.standing, effect.by_load, bool(others)
                 if alike not in beside:
                     beside[alike] = self._beside(cause, others)
-                again = screen.linearise(beside[alike], effect, cause.location, at)
+                again = linearise(beside[alike], effect, cause.location, at)
                 if again is not None:
                     cause, moved = self._instead(cause, again, wanted), True
                 causes.append(cause)
@@ -208,7 +212,7 @@ class HypothesisFit:
         """A cause as it is linearised again; where it gains nothing by scaling torques, so does
         this.
         """
-        again = self.evidence.acting(again, cause.standing)
+        again = self.evidence.on_all_samples(again, cause.standing)
         shows = {term.row: term.shows for term in cause.factors if isinstance(term, Factor)}
         factors = tuple(
             replace(term, shows=shows.get(term.row, term.shows))
@@ -248,27 +252,28 @@ class HypothesisFit:
             scales: to begin with.
         """
         channels = self.evidence.channels
-        stack = Stack.of([c for one in candidates for c in one.causes], self.evidence.weight)
+        causes = [cause for candidate in candidates for cause in candidate.causes]
+        stack = Stack.of(causes, self.evidence.weight)
         crossing = Crossing.of(channels, stack.rows)
-        begun = [self._begun(stack, crossing, scales)]
-        clear = eased(self.evidence, scales, self.rules)
+        beginnings = [self._first_round(stack, crossing, scales)]
+        limited = limited_scales(self.evidence, scales, self.rules)
         if any(
-            len(seen) and np.any(one.noise < own.noise)
-            for one, own, seen in zip(clear, scales, crossing.shown, strict=True)
+            len(rows) and np.any(low.noise < own.noise)
+            for low, own, rows in zip(limited, scales, crossing.shown, strict=True)
         ):
-            begun.append(self._begun(stack, crossing, clear))
-        found = max(begun, key=lambda one: self._likelihood(stack, crossing, one))
+            beginnings.append(self._first_round(stack, crossing, limited))
+        fit = max(beginnings, key=lambda begun: self._likelihood(stack, crossing, begun))
         for _ in range(self.rules.search.rounds - 1):
-            if not found.moved.any():
+            if not fit.moved.any():
                 break
-            found = self._round(stack, crossing, found, 1, STEPS[-1:], again=True)
-        likelihood = self._likelihood(stack, crossing, found)
-        sizes = found.solution.theta, found.solution.covariance
-        hypothesis = Hypothesis(tuple(candidates), *sizes, found.scales, likelihood, 0.0)
+            fit = self._round(stack, crossing, fit, 1, STEPS[-1:], again=True)
+        likelihood = self._likelihood(stack, crossing, fit)
+        sizes = fit.solution.theta, fit.solution.covariance
+        hypothesis = Hypothesis(tuple(candidates), *sizes, fit.scales, likelihood, 0.0)
         prior = log_prior(hypothesis, self.evidence, self.rules, self.count)
         return replace(hypothesis, log_prior=prior)
 
-    def _begun(self, stack: Stack, crossing: Crossing, scales: Sequence[Scales]) -> _Fitted:
+    def _first_round(self, stack: Stack, crossing: Crossing, scales: Sequence[Scales]) -> _Fitted:
         """Causes at given scales, and after one round."""
         solution = self.at_scales(stack, crossing, scales)
         begun = _Fitted(tuple(scales), solution, np.ones(crossing.count, bool))
@@ -303,15 +308,15 @@ class HypothesisFit:
         )
         return _Fitted(scales, solution, moved)
 
-    def _likelihood(self, stack: Stack, crossing: Crossing, found: _Fitted) -> float:
+    def _likelihood(self, stack: Stack, crossing: Crossing, fit: _Fitted) -> float:
         """Log evidence of causes at scales over that of no cause [nat]."""
         channels = self.evidence.channels
-        left = crossing.left(channels, _sizes(stack, found.solution))
-        each = zip(channels, found.scales, left, self.ground, strict=True)
-        return found.solution.occam + float(
+        left = crossing.left(channels, _sizes(stack, fit.solution))
+        each = zip(channels, fit.scales, left, self.null_log_posterior, strict=True)
+        return fit.solution.occam + float(
             sum(
-                channel.log_posterior(own, self.rules, rest) - ground
-                for channel, own, rest, ground in each
+                channel.log_posterior(own, self.rules, rest) - null
+                for channel, own, rest, null in each
             )
         )
 
@@ -329,14 +334,14 @@ def _near(values: ArrayLike, others: ArrayLike, usual: ArrayLike) -> bool:
     return bool(np.all(np.abs(first - second) < CLOSE * np.asarray(usual)))
 
 
-def eased(
+def limited_scales(
     evidence: Evidence, scales: Sequence[Scales], rules: InferenceRules
 ) -> tuple[Scales, ...]:
     """Limit the scales under test, so that a search for causes finds what noise and discrepancy
     would explain otherwise.
 
     Noise and discrepancy that were fitted without a cause stand for it and hide it. They are cut to
-    `EASED` times those of a healthy robot.
+    `SCALES_LIMIT` times those of a healthy robot.
 
     Args:
         evidence: channels.
@@ -347,11 +352,13 @@ def eased(
         The limited scales by channel.
     """
     prior = rules.discrepancy
-    change, alone = np.log(EASED * prior.change), np.log(EASED * prior.standing)
-    found = []
-    for channel, one in zip(evidence.channels, scales, strict=True):
-        noise, place = one.noise.copy(), channel.bands_tested
-        noise[place] = np.minimum(noise[place], EASED * channel.usual_noise(one.noise, rules))
-        standing = one.standing if channel.referenced else min(one.standing, alone)
-        found.append(Scales(noise, standing, min(one.change, change), 0.0))
-    return tuple(found)
+    change, alone = np.log(SCALES_LIMIT * prior.change), np.log(SCALES_LIMIT * prior.standing)
+    limited = []
+    for channel, own in zip(evidence.channels, scales, strict=True):
+        noise, place = own.noise.copy(), channel.bands_tested
+        noise[place] = np.minimum(
+            noise[place], SCALES_LIMIT * channel.usual_noise(own.noise, rules)
+        )
+        standing = own.standing if channel.referenced else min(own.standing, alone)
+        limited.append(Scales(noise, standing, min(own.change, change), 0.0))
+    return tuple(limited)

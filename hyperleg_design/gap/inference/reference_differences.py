@@ -15,11 +15,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
-from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.cause import Cause
+from hyperleg_design.gap.inference.effect_traces import Starts, Traces
 from hyperleg_design.gap.inference.hypothesis import Hypothesis, Name
-from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit, eased
-from hyperleg_design.gap.inference.promises import Promises
+from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit, limited_scales
+from hyperleg_design.gap.inference.linearisation import SHOWN, reach
+from hyperleg_design.gap.inference.proposals import Proposer
 from hyperleg_design.gap.inference.search import Result, Search
 from hyperleg_design.gap.signals.signals import Signals
 
@@ -83,12 +84,12 @@ def differences(search: Search, result: Result) -> list[Difference]:
         log = len(evidence.signals) + number
         only = (evidence.samples.log[evidence.samples.part] == log).astype(float)
         traces = _traces_in(search, only)
-        promises = Promises(evidence, search.rules, traces, search.threads)
+        proposer = Proposer(evidence, search.rules, traces, search.threads)
         fits = HypothesisFit(evidence, search.rules, traces, search.count, search.threads, only)
         beside = [
             difference
             for hypothesis in (likely if traces else ())
-            if (difference := _beside(search, promises, fits, hypothesis, number)) is not None
+            if (difference := _beside(search, proposer, fits, hypothesis, number)) is not None
         ]
         odd += sorted(beside, key=lambda difference: -difference.odds)[:1]
     odd = [replace(difference, odds=difference.odds - best) for difference in odd]
@@ -97,13 +98,13 @@ def differences(search: Search, result: Result) -> list[Difference]:
 
 
 def _beside(
-    search: Search, promises: Promises, fits: HypothesisFit, hypothesis: Hypothesis, number: int
+    search: Search, proposer: Proposer, fits: HypothesisFit, hypothesis: Hypothesis, number: int
 ) -> Difference | None:
     """Fit the most promising effect in one reference beside a hypothesis.
 
     Args:
         search: on tests and references.
-        promises: of effects that act in the reference alone.
+        proposer: of effects that act in the reference alone.
         fits: of effects that act in the reference alone.
         hypothesis: about tests and references.
         number: place among the references.
@@ -113,16 +114,16 @@ def _beside(
         nothing shows there.
     """
     evidence = search.evidence
-    scales = eased(evidence, hypothesis.scales, search.rules)
-    promise = next(iter(promises.beside(hypothesis.causes, scales)), None)
-    if promise is None:
+    scales = limited_scales(evidence, hypothesis.scales, search.rules)
+    proposal = next(iter(proposer.proposals(hypothesis.causes, scales)), None)
+    if proposal is None:
         return None
-    candidate = fits.candidate(promise, hypothesis)
+    candidate = fits.candidate(proposal, hypothesis)
     if candidate is None:
         return None
     fitted = search.fits.fit((*hypothesis.candidates, candidate), hypothesis.scales)
     place = len(fitted.causes) - 1
-    tried = len(search.count) * search.count[promise.effect] * len(evidence.references)
+    tried = len(search.count) * search.count[proposal.effect] * len(evidence.references)
     chance = float(np.log(search.rules.cause.changed / tried))
     together = fitted.log_evidence + hypothesis.log_prior + chance
     log = evidence.references[number].log.name
@@ -130,23 +131,23 @@ def _beside(
     return Difference(number, log, cause, fitted.values(place), fitted.deviation(place), together)
 
 
-def _traces_in(search: Search, only: np.ndarray) -> dict[Name, screen.Traces]:
+def _traces_in(search: Search, only: np.ndarray) -> dict[Name, Traces]:
     """Effects that act in one log alone, where this log shows them."""
     evidence = search.evidence
-    traces: dict[Name, screen.Traces] = {}
+    traces: dict[Name, Traces] = {}
     for (effect, location, standing), traced in search.traces.items():
         weighed = WEIGHED[effect]
         if not standing or weighed.flexible:
             continue
-        own: screen.Traces
+        own: Traces
         if isinstance(traced, list):
-            own = [evidence.acting(c, False, only) for c in traced if not c.factors]
+            own = [evidence.on_all_samples(c, False, only) for c in traced if not c.factors]
             shown = [cause.columns for cause in own]
-        elif isinstance(traced, screen.Starts) and not (weighed.scales or weighed.holds_back):
+        elif isinstance(traced, Starts) and not (weighed.scales or weighed.holds_back):
             own = cut = replace(traced, columns=traced.columns * only)
             shown = [cut.traces]
         else:
             continue
-        if any(screen.reach(evidence.samples, columns) >= screen.SHOWN for columns in shown):
+        if any(reach(evidence.samples, columns) >= SHOWN for columns in shown):
             traces[effect, location, False] = own
     return traces

@@ -1,4 +1,4 @@
-"""The search for the hypotheses with the largest posterior probability: nothing, each effect at
+"""The search for the hypotheses with the largest posterior probability: no cause, each effect at
 each place, an effect at all of its places, and sets of them by forward and backward steps.
 """
 
@@ -10,17 +10,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
-from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.cause_prior import log_chance
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
+from hyperleg_design.gap.inference.effect_traces import NotJudged, traces_of
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis, Name, Stack
-from hyperleg_design.gap.inference.hypothesis_fit import CLOSE, HypothesisFit, eased
-from hyperleg_design.gap.inference.promises import Promise, Promises
+from hyperleg_design.gap.inference.hypothesis_fit import CLOSE, HypothesisFit, limited_scales
+from hyperleg_design.gap.inference.proposals import Proposal, Proposer
 from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.threads import spread
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +29,7 @@ class Result:
     """All hypotheses that were fitted, best first."""
 
     hypotheses: tuple[Hypothesis, ...]
-    not_judged: tuple[screen.NotJudged, ...]
+    not_judged: tuple[NotJudged, ...]
 
     @property
     def best(self) -> Hypothesis:
@@ -57,66 +58,66 @@ class Search:
         self.count = {name: sum(e == name for e, _ in places) for name, _ in places}
         self.traces = traces_of(evidence, places, threads)
         self.fits = HypothesisFit(evidence, rules, self.traces, self.count, threads)
-        self.promises = Promises(evidence, rules, self.traces, threads)
-        self.fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.fits.nothing}
+        self.proposer = Proposer(evidence, rules, self.traces, threads)
+        self.fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.fits.null}
         """By the names of their candidates."""
-        self._short: dict[tuple[Name, ...], tuple[float, float]] = {}
-        """Of causes that were worse than none when they were fitted last beside others at their
-        place: the promise that would have been enough, and the score of the hypothesis beside
-        which they were fitted [nat]."""
+        self._needed: dict[tuple[Name, ...], tuple[float, float]] = {}
+        """Of causes that lowered the score when they were fitted last beside others at their place:
+        the predicted change of the score that would have been enough, and the score of the
+        hypothesis beside which they were fitted [nat]."""
 
     def result(self) -> Result:
         """Search forward until no further cause is worth its prior, drop what is not, and put
         others in the place of each.
         """
-        current = self.fits.nothing
-        fewer: list[Hypothesis] = []
+        current = self.fits.null
+        smaller: list[Hypothesis] = []
         while True:
-            best = self._better(self.further(current), current)
+            best = self._improved(self.extended(current), current)
             if best is current and len(current.candidates) > 1:
-                fewer = fewer or self._fewer(current)
-                for one, rest in zip(current.candidates, fewer, strict=True):
-                    best = self._better(self.further(rest, one), best)
+                smaller = smaller or self._each_removed(current)
+                for removed, rest in zip(current.candidates, smaller, strict=True):
+                    best = self._improved(self.extended(rest, removed), best)
             if best is current:
-                best = self._beside_rivals(current)
+                best = self._with_rivals_at_each_place(current)
             if best is current:
-                best = self._listed(current)
+                best = self._without_unlisted(current)
             if best is current:
                 break
-            current, fewer = best, self._fewer(best)
-            best = self._better(fewer[:-1], current)
+            current, smaller = best, self._each_removed(best)
+            best = self._improved(smaller[:-1], current)
             if best is not current:
-                current, fewer = best, []
-        ranked = sorted(self.fitted.values(), key=lambda one: (-one.score, one.names))
+                current, smaller = best, []
+        ranked = sorted(self.fitted.values(), key=lambda fitted: (-fitted.score, fitted.names))
         missing = tuple(
             traced
             for (*_, standing), traced in self.traces.items()
-            if isinstance(traced, screen.NotJudged) and not standing
+            if isinstance(traced, NotJudged) and not standing
         )
         return Result(tuple(ranked), missing)
 
-    def _better(self, found: Sequence[Hypothesis], current: Hypothesis) -> Hypothesis:
-        """The best of some hypotheses, if better than a current one; all are kept. What would be
-        better is settled first.
+    def _improved(self, others: Sequence[Hypothesis], current: Hypothesis) -> Hypothesis:
+        """The best of a current hypothesis and others. Others with a larger score are linearised
+        again first; all are recorded.
         """
-        for hypothesis in sorted(found, key=lambda any_: -any_.score):
+        for hypothesis in sorted(others, key=lambda other: -other.score):
             if hypothesis.score > current.score:
-                hypothesis = self.fits.settled(hypothesis)
+                hypothesis = self.fits.relinearised(hypothesis)
             self.fitted[hypothesis.names] = hypothesis
-            current = max(current, hypothesis, key=lambda any_: any_.score)
+            current = max(current, hypothesis, key=lambda other: other.score)
         return current
 
-    def _beside_rivals(self, current: Hypothesis) -> Hypothesis:
-        """Fit what else may act where each cause under test does, the others as they are, so that
-        rivals at its place are compared on the same footing.
+    def _with_rivals_at_each_place(self, current: Hypothesis) -> Hypothesis:
+        """Fit the other effects at the place of each cause under test in its stead, the other
+        causes as they are, so that rivals at one place are compared on the same footing.
         """
         best = current
-        for one, rest in zip(current.candidates, self._fewer(current), strict=True):
-            if not one.standing and one.location != EVERYWHERE:
-                best = self._better(self.further(rest, at=one.location), best)
+        for removed, rest in zip(current.candidates, self._each_removed(current), strict=True):
+            if not removed.standing and removed.location != EVERYWHERE:
+                best = self._improved(self.extended(rest, at=removed.location), best)
         return best
 
-    def _listed(self, current: Hypothesis) -> Hypothesis:
+    def _without_unlisted(self, current: Hypothesis) -> Hypothesis:
         """Search without the flexible effects of a hypothesis, which take what several causes of
         the catalogue leave together before any of these has been tried beside another.
 
@@ -131,17 +132,17 @@ class Search:
             return current
         best = self._known(rest) or self.fits.fit(rest, current.scales)
         while True:
-            tried = self.further(best, flexible=False)
-            more = self._better(tried, best)
-            if more is best and tried:  # two causes may gain only beside one another
-                likeliest = max(tried, key=lambda any_: any_.score)
-                more = self._better(self.further(likeliest, flexible=False), best)
-            if more is best:
-                return max(current, best, key=lambda any_: any_.score)
-            best = more
+            tried = self.extended(best, flexible=False)
+            better = self._improved(tried, best)
+            if better is best and tried:  # two causes may gain only beside one another
+                likeliest = max(tried, key=lambda fitted: fitted.score)
+                better = self._improved(self.extended(likeliest, flexible=False), best)
+            if better is best:
+                return max(current, best, key=lambda fitted: fitted.score)
+            best = better
 
-    def _fewer(self, current: Hypothesis) -> list[Hypothesis]:
-        """A hypothesis without each of its candidates."""
+    def _each_removed(self, current: Hypothesis) -> list[Hypothesis]:
+        """The hypotheses that lack one candidate of a hypothesis each."""
         smaller = []
         for place in range(len(current.candidates)):
             rest = current.candidates[:place] + current.candidates[place + 1 :]
@@ -149,37 +150,41 @@ class Search:
             self.fitted[smaller[-1].names] = smaller[-1]
         return smaller
 
-    def _known(self, candidates: Sequence[Candidate | Promise]) -> Hypothesis | None:
+    def _known(self, candidates: Sequence[Candidate | Proposal]) -> Hypothesis | None:
         """The hypothesis of some candidates, where it was fitted before."""
-        return self.fitted.get(tuple(sorted(one.name for one in candidates)))
+        return self.fitted.get(tuple(sorted(candidate.name for candidate in candidates)))
 
-    def further(
+    def extended(
         self,
         current: Hypothesis,
         instead: Candidate | None = None,
         at: str = "",
         flexible: bool = True,
     ) -> list[Hypothesis]:
-        """Fit the most promising causes beside those of a hypothesis.
+        """Extend a hypothesis by each of the causes whose predicted gains are largest.
 
         Args:
             current: the hypothesis.
-            instead: a candidate whose place they are to take: only those that promise more.
-            at: location of those that are tried; all by default, and effects at all of theirs.
+            instead: a candidate that they are to replace: only causes that gain more are fitted.
+            at: location of the causes that are tried; by default all locations, and effects at
+                all of their places together.
             flexible: whether effects that the catalogue lacks are among them.
+
+        Returns:
+            The extended hypotheses, fitted.
         """
         rules = self.rules.search
-        promises: dict[Name, list[Promise]] = {}
-        scales = eased(self.evidence, current.scales, self.rules)
-        for one in self.promises.beside(current.causes, scales):
-            if self._room(current, one.standing):
-                promises.setdefault(one.name, []).append(one)
-        names = sorted(promises, key=lambda name: (-promises[name][0].gain, name))
+        proposals: dict[Name, list[Proposal]] = {}
+        scales = limited_scales(self.evidence, current.scales, self.rules)
+        for proposal in self.proposer.proposals(current.causes, scales):
+            if self._may_grow(current, proposal.standing):
+                proposals.setdefault(proposal.name, []).append(proposal)
+        names = sorted(proposals, key=lambda name: (-proposals[name][0].gain, name))
         if not names:
             return []
-        gains = {name: promises[name][0].gain for name in names}
-        groups = [] if at else self.everywhere(promises, current)
-        gains |= {one.name: gain for gain, one in groups}
+        gains = {name: proposals[name][0].gain for name in names}
+        groups = [] if at else self.at_all_places(proposals, current)
+        gains |= {group.name: gain for gain, group in groups}
         least = rules.least
         if instead is not None:
             least = max(least, gains.get(instead.name, least))
@@ -187,102 +192,110 @@ class Search:
         unlisted = [name for name in promising if WEIGHED[name[0]].flexible]
         chosen = [name for name in promising if name not in unlisted][: rules.candidates]
         chosen += unlisted[: rules.flexible if flexible else 0]
-        chosen = [name for name in chosen if self._hopeful(promises[name], current)]
-        fitted = screen.spread(
-            lambda name: self.best_of(promises[name][: rules.starts], current), chosen, self.threads
+        chosen = [name for name in chosen if self._worth_fitting(proposals[name], current)]
+        fitted = spread(
+            lambda name: self.best_start(proposals[name][: rules.starts], current),
+            chosen,
+            self.threads,
         )
-        hypotheses = [one for one in fitted if one is not None]
+        hypotheses = [hypothesis for hypothesis in fitted if hypothesis is not None]
         hypotheses += [
-            self._known((*current.candidates, one))
-            or self.fits.fit((*current.candidates, one), current.scales)
-            for gain, one in groups[: rules.groups]
+            self._known((*current.candidates, group))
+            or self.fits.fit((*current.candidates, group), current.scales)
+            for gain, group in groups[: rules.groups]
             if gain > least
         ]
         return hypotheses
 
-    def _room(self, current: Hypothesis, standing: bool) -> bool:
+    def _may_grow(self, current: Hypothesis, standing: bool) -> bool:
         """Whether a hypothesis may have one more cause in all logs, or under test alone."""
         most = self.rules.search.standing if standing else self.rules.search.causes
-        return sum(one.standing == standing for one in current.candidates) < most
+        return sum(c.standing == standing for c in current.candidates) < most
 
-    def _hopeful(self, promises: Sequence[Promise], current: Hypothesis) -> bool:
-        """Whether a cause that was worse than none when it was fitted last may be worth its prior
-        now: it promises more than then, or what has been gained since is what it lacked.
+    def _worth_fitting(self, proposals: Sequence[Proposal], current: Hypothesis) -> bool:
+        """Whether a cause that lowered the score when it was fitted last may raise it now: its
+        predicted gain is larger than then, or the hypothesis has gained since what it lacked.
         """
-        if self._known((*current.candidates, promises[0])) is not None:
+        if self._known((*current.candidates, proposals[0])) is not None:
             return True
-        enough, score = self._short.get(_at_place(promises[0], current), (-np.inf, 0.0))
-        return self._promised(promises[0], current) + max(current.score - score, 0.0) > enough
+        enough, score = self._needed.get(_names_at_place(proposals[0], current), (-np.inf, 0.0))
+        since = max(current.score - score, 0.0)
+        return self._predicted_change(proposals[0], current) + since > enough
 
-    def _promised(self, promise: Promise, current: Hypothesis) -> float:
-        """What a cause promises beside those of a hypothesis, with the chance that it acts there
-        beside them [nat].
+    def _predicted_change(self, proposal: Proposal, current: Hypothesis) -> float:
+        """The predicted change of the score by a cause beside those of a hypothesis: its gain, and
+        the prior probability that it acts there beside them [nat].
         """
         names = [candidate.name for candidate in current.candidates]
         chances = [
             log_chance(some, self.evidence, self.rules, self.count)
-            for some in (names, sorted([*names, promise.name]))
+            for some in (names, sorted([*names, proposal.name]))
         ]
-        return promise.gain + chances[1] - chances[0]
+        return proposal.gain + chances[1] - chances[0]
 
-    def best_of(self, promises: Sequence[Promise], current: Hypothesis) -> Hypothesis | None:
+    def best_start(self, proposals: Sequence[Proposal], current: Hypothesis) -> Hypothesis | None:
         """Fit an effect at a place beside a hypothesis from several starts.
 
         Args:
-            promises: the starts, or the best variant of a linear effect.
+            proposals: the starts, or the best variant of a linear effect.
             current: the hypothesis.
 
         Returns:
             The best fit; None where no log shows the effect.
         """
-        known = self._known((*current.candidates, promises[0]))
+        known = self._known((*current.candidates, proposals[0]))
         if known is not None:
             return known
-        linear = WEIGHED[promises[0].effect].linear
-        apart: list[Candidate] = []
-        for promise in promises[: 1 if linear else None]:
-            candidate = self.fits.candidate(promise, current)
-            if candidate and not any(_alike(candidate, other) for other in apart):
-                apart.append(candidate)
+        linear = WEIGHED[proposals[0].effect].linear
+        optima: list[Candidate] = []
+        for proposal in proposals[: 1 if linear else None]:
+            candidate = self.fits.candidate(proposal, current)
+            if candidate and not any(_alike(candidate, other) for other in optima):
+                optima.append(candidate)
         fits_of_starts = [
-            self.fits.fit((*current.candidates, one), current.scales) for one in apart
+            self.fits.fit((*current.candidates, optimum), current.scales) for optimum in optima
         ]
-        best = max(fits_of_starts, key=lambda one: one.score, default=None)
-        self._short.pop(_at_place(promises[0], current), None)
+        best = max(fits_of_starts, key=lambda fitted: fitted.score, default=None)
+        self._needed.pop(_names_at_place(proposals[0], current), None)
         if best is not None and best.score < current.score:
-            enough = self._promised(promises[0], current) + current.score - best.score
-            self._short[_at_place(promises[0], current)] = enough, current.score
+            enough = self._predicted_change(proposals[0], current) + current.score - best.score
+            self._needed[_names_at_place(proposals[0], current)] = enough, current.score
         return best
 
-    def everywhere(
-        self, promises: Mapping[Name, Sequence[Promise]], current: Hypothesis
+    def at_all_places(
+        self, proposals: Mapping[Name, Sequence[Proposal]], current: Hypothesis
     ) -> list[tuple[float, Candidate]]:
         """Join linear effects at all of their places, and compute what they gain beside a
         hypothesis at its scales.
 
         Args:
-            promises: of effects at single places.
+            proposals: of effects at single places.
             current: the hypothesis.
 
         Returns:
             Gains [nat] and candidates, best first.
         """
-        scales = eased(self.evidence, current.scales, self.rules)
-        acting = {(one.effect, one.standing) for one in current.candidates}
+        scales = limited_scales(self.evidence, current.scales, self.rules)
+        acting = {(candidate.effect, candidate.standing) for candidate in current.candidates}
         start, joined_effects = 0.0, []
         if current.causes:
             start = self._gain(current.causes, scales)
-        for effect, standing in sorted({(name[0], name[2]) for name in promises} - acting):
+        for effect, standing in sorted({(name[0], name[2]) for name in proposals} - acting):
             effect_tried = WEIGHED[effect]
             if not effect_tried.linear or effect_tried.flexible or self.count[effect] < 2:
                 continue
-            own = sorted(name for name in promises if (name[0], name[2]) == (effect, standing))
-            causes = [self.fits.candidate(promises[name][0], current) for name in own]
-            joined = tuple(ungaining(c) for one in causes if one is not None for c in one.causes)
-            if len(joined) < 2:
+            own = sorted(name for name in proposals if (name[0], name[2]) == (effect, standing))
+            candidates = [self.fits.candidate(proposals[name][0], current) for name in own]
+            causes = tuple(
+                without_gain_from_torques(cause)
+                for candidate in candidates
+                if candidate is not None
+                for cause in candidate.causes
+            )
+            if len(causes) < 2:
                 continue
-            one = Candidate(effect, EVERYWHERE, joined)
-            joined_effects.append((self._gain((*current.causes, *joined), scales) - start, one))
+            gain = self._gain((*current.causes, *causes), scales) - start
+            joined_effects.append((gain, Candidate(effect, EVERYWHERE, causes)))
         return sorted(joined_effects, key=lambda entry: (-entry[0], *entry[1].name))
 
     def _gain(self, causes: Sequence[Cause], scales: Sequence[Scales]) -> float:
@@ -292,64 +305,20 @@ class Search:
         return self.fits.at_scales(stack, crossing, scales).gain
 
 
-def _at_place(promise: Promise, current: Hypothesis) -> tuple[Name, ...]:
+def _names_at_place(proposal: Proposal, current: Hypothesis) -> tuple[Name, ...]:
     """Name of a cause, and those of a hypothesis at the same place."""
-    return promise.name, *(name for name in current.names if name[1] == promise.location)
+    return proposal.name, *(name for name in current.names if name[1] == proposal.location)
 
 
-def _alike(one: Candidate, other: Candidate) -> bool:
+def _alike(first: Candidate, second: Candidate) -> bool:
     """Whether an effect at a place is linearised at about the same values twice."""
     return all(
         bool(np.all(np.abs(a.values - b.values) < CLOSE * a.usual))
-        for a, b in zip(one.causes, other.causes, strict=True)
+        for a, b in zip(first.causes, second.causes, strict=True)
     )
 
 
-def traces_of(
-    evidence: Evidence, places: Sequence[tuple[str, str]], threads: int
-) -> dict[Name, screen.Traces]:
-    """What each effect leaves at each place in the logs under test and, with references, in all
-    logs.
-
-    Args:
-        evidence: channels.
-        places: effects and locations.
-        threads: that share the work.
-    """
-    traced = screen.spread(lambda place: _traced(evidence, place), places, threads)
-    by_name: dict[Name, screen.Traces] = {}
-    for (effect, location), both in zip(places, traced, strict=True):
-        for standing, one in zip((False, True), both, strict=False):
-            by_name[effect, location, standing] = one
-    return by_name
-
-
-def _traced(evidence: Evidence, place: tuple[str, str]) -> list[screen.Traces]:
-    """In the logs under test and, with references, in all logs."""
-    flexible = WEIGHED[place[0]].flexible
-    samples = evidence.tests if flexible else evidence.samples
-    whole = screen.trace(samples, WEIGHED[place[0]], place[1])
-    if isinstance(whole, screen.NotJudged):
-        return [whole] * (2 if evidence.references and not flexible else 1)
-    count = len(evidence.tests.value)
-    own: screen.Traces
-    if isinstance(whole, list):
-        own = [
-            evidence.acting(cut, False)
-            for one in whole
-            if (cut := screen.under_test(one, evidence.tests)) is not None
-        ]
-        whole = [evidence.acting(one, True) for one in whole]
-    else:
-        own = replace(whole, columns=whole.columns[:, :count])
-        if screen.reach(evidence.tests, own.traces) < screen.SHOWN:
-            own = []
-    if not own:
-        own = screen.NotJudged(*place, screen.UNEXCITED)
-    return [own, whole] if evidence.references and not flexible else [own]
-
-
-def ungaining(cause: Cause) -> Cause:
+def without_gain_from_torques(cause: Cause) -> Cause:
     """Keep a cause from gaining by larger torques.
 
     Where an effect scales the torques at all of its places, masses and friction may be larger by as

@@ -10,12 +10,12 @@ from pathlib import Path
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.checks.check import Check, check_log
-from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.detectors.imu_offset import PLACE, imu_offset
 from hyperleg_design.gap.inference.detectors.sinking import EFFECT as SOFT
 from hyperleg_design.gap.inference.detectors.sinking import sinks
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.inference.detectors.slipping import slips
+from hyperleg_design.gap.inference.effect_traces import places
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
@@ -161,7 +161,7 @@ def diagnose_signals(
         references,
         [
             place
-            for place in screen.places(signals[0].subject, effects)
+            for place in places(signals[0].subject, effects)
             if place[0] not in (SLIPPERY, SOFT)  # feet tell these by themselves, see `_beside`
         ],
         rules,

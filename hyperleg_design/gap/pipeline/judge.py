@@ -63,7 +63,7 @@ def judge_signals(
     posterior = posterior_of(result, evidence, size, rules)
     answer = Answer(evidence, result, posterior, size, rules, seed, apart)
     # a gap that causes explain hides no other fault, one that nothing explains does
-    beside = search.fits.nothing if posterior.verdict == "unknown" else posterior.hypothesis
+    beside = search.fits.null if posterior.verdict == "unknown" else posterior.hypothesis
     sensitivity = tuple(entry.mapping() for entry in detectable(search, beside))
     return answer.diagnosis(checks, sensitivity)
 
@@ -81,4 +81,4 @@ def _searched(
 
 def _gain(search: Search, result: Result) -> float:
     """What the causes gain over none [nat]."""
-    return result.best.score - search.fits.nothing.score
+    return result.best.score - search.fits.null.score

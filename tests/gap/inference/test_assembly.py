@@ -8,9 +8,9 @@ import pytest
 from causes import unbounded
 
 from hyperleg_design.gap.effects import WEIGHED
-from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.endogenous import Factor, joined
 from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit
+from hyperleg_design.gap.inference.linearisation import linearise
 from hyperleg_design.gap.inference.rules import InferenceRules
 
 
@@ -26,7 +26,7 @@ def loud(robot_files):
 def test_a_channel_that_is_mostly_noise_is_fitted_too(loud):
     (drive,) = (c for c in loud.channels if (c.residual, c.name) == ("drive", "m_front"))
     assert drive.columns == 1
-    (scales, *_) = HypothesisFit(loud, InferenceRules(), {}, {}).nothing.scales
+    (scales, *_) = HypothesisFit(loud, InferenceRules(), {}, {}).null.scales
     assert np.isfinite(scales.noise).all()
 
 
@@ -71,8 +71,8 @@ def test_a_reading_that_is_off_pays_in_the_residual_of_its_drive_whatever_else_s
     subject, samples = evidence.signals[0].subject, evidence.tests
     causes = {}
     for effect, values in (("torque_constant", [1.0, 1.0]), ("transmission_ratio", [1.02, 0.0])):
-        found = screen.linearise(samples, WEIGHED[effect], "m_front", np.array(values))
-        causes[effect] = evidence.acting(found, False)
+        found = linearise(samples, WEIGHED[effect], "m_front", np.array(values))
+        causes[effect] = evidence.on_all_samples(found, False)
     rows = [samples.rows[cause.factors[0].row] for cause in causes.values()]
     assert [row.residual_name for row in rows] == ["drive", "motion"]
     assert subject.motors[rows[0].column] == "m_front"

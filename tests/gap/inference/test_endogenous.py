@@ -9,7 +9,7 @@ from hyperleg_design.gap.inference.endogenous import (
     Factor,
     factors_of,
     held_back,
-    held_back_whole,
+    held_back_in_all,
     joined,
 )
 
@@ -86,7 +86,7 @@ def test_a_limit_pays_for_the_torque_that_it_holds_back(robot_files):
     assert held_back(samples, saturation, "m_front", np.array([high])) == ()
     found = held_back(samples, saturation, "m_front", np.array([low]))
     assert len(found) == 1
-    (whole,) = held_back_whole(samples, saturation, "m_front", np.array([low]))
+    (whole,) = held_back_in_all(samples, saturation, "m_front", np.array([low]))
     assert whole.log(np.zeros(1)) == 0
     # of two motors at this joint one is held back, four fifths of the time
     held = 0.8 * np.log(0.5)

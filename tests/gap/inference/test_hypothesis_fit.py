@@ -7,9 +7,14 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.hypothesis import Candidate
-from hyperleg_design.gap.inference.hypothesis_fit import CLOSE, EASED, HypothesisFit, eased
+from hyperleg_design.gap.inference.hypothesis_fit import (
+    CLOSE,
+    SCALES_LIMIT,
+    HypothesisFit,
+    limited_scales,
+)
+from hyperleg_design.gap.inference.linearisation import linearise
 from hyperleg_design.gap.inference.rules import InferenceRules
 
 PLACE = "shank"
@@ -34,35 +39,39 @@ def fits(robot_files):
 
 
 def fitted(fits, values):
-    cause = screen.linearise(fits.evidence.tests, EFFECTS["payload"], PLACE, np.array(values))
-    cause = fits.evidence.acting(cause, False)
-    return fits.fit((Candidate("payload", PLACE, (cause,)),), fits.nothing.scales)
+    cause = linearise(fits.evidence.tests, EFFECTS["payload"], PLACE, np.array(values))
+    cause = fits.evidence.on_all_samples(cause, False)
+    return fits.fit((Candidate("payload", PLACE, (cause,)),), fits.null.scales)
 
 
 def test_a_load_is_the_same_wherever_it_was_linearised(fits):
     far, near = fitted(fits, [0.2, 0.02, 0.0, -0.35, 0.0]), fitted(fits, LOAD)
     assert abs(far.values(0)[0] - near.values(0)[0]) > 0.1 * LOAD[0]
-    settled = fits.settled(far)
-    np.testing.assert_allclose(settled.values(0)[0], fits.settled(near).values(0)[0], rtol=0.02)
+    settled = fits.relinearised(far)
+    np.testing.assert_allclose(
+        settled.values(0)[0], fits.relinearised(near).values(0)[0], rtol=0.02
+    )
     assert settled.values(0)[0] == pytest.approx(LOAD[0], rel=0.1)
     (cause,) = settled.causes
     assert (np.abs(cause.values - settled.values(0)) < CLOSE * cause.usual).all()
 
 
 def test_what_is_linearised_where_it_is_stays_as_it_is(fits):
-    settled = fits.settled(fitted(fits, LOAD))
-    assert fits.settled(settled) is settled
+    settled = fits.relinearised(fitted(fits, LOAD))
+    assert fits.relinearised(settled) is settled
 
 
 def test_friction_under_load_is_linearised_with_the_load_that_is_fitted_beside_it(fits):
-    rubbing = screen.linearise(
+    rubbing = linearise(
         fits.evidence.samples, EFFECTS["load_dependent_friction"], "knee", np.array([0.1])
     )
     candidates = (
         *fitted(fits, LOAD).candidates,
-        Candidate("load_dependent_friction", "knee", (fits.evidence.acting(rubbing, True),)),
+        Candidate(
+            "load_dependent_friction", "knee", (fits.evidence.on_all_samples(rubbing, True),)
+        ),
     )
-    settled = fits.settled(fits.fit(candidates, fits.nothing.scales))
+    settled = fits.relinearised(fits.fit(candidates, fits.null.scales))
     load, rubs = settled.causes
     np.testing.assert_allclose(rubs.before, settled.values(0), atol=0.02)
     assert not load.before
@@ -72,14 +81,14 @@ def test_friction_under_load_is_linearised_with_the_load_that_is_fitted_beside_i
 def test_causes_are_looked_for_where_nothing_stands_in_for_them(fits):
     """Whatever noise and discrepancy have grown to in logs under test."""
     grown = tuple(
-        replace(one, noise=100 * one.noise, change=2.0, new=1.0) for one in fits.nothing.scales
+        replace(one, noise=100 * one.noise, change=2.0, new=1.0) for one in fits.null.scales
     )
     for one, large, channel in zip(
-        eased(fits.evidence, grown, fits.rules), grown, fits.evidence.channels, strict=True
+        limited_scales(fits.evidence, grown, fits.rules), grown, fits.evidence.channels, strict=True
     ):
         assert one.new == 0
-        assert np.exp(one.change) == pytest.approx(EASED * fits.rules.discrepancy.change)
+        assert np.exp(one.change) == pytest.approx(SCALES_LIMIT * fits.rules.discrepancy.change)
         assert one.standing == large.standing  # of references
         usual = channel.usual_noise(large.noise, fits.rules)
-        assert (one.noise[channel.bands_tested] <= EASED * usual).all()
-    assert eased(fits.evidence, fits.nothing.scales, fits.rules)[0].new == 0
+        assert (one.noise[channel.bands_tested] <= SCALES_LIMIT * usual).all()
+    assert limited_scales(fits.evidence, fits.null.scales, fits.rules)[0].new == 0

@@ -6,7 +6,7 @@ import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.interactions import after, carrying
-from hyperleg_design.gap.inference.screen import linearise
+from hyperleg_design.gap.inference.linearisation import linearise
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.signals.conditioning import condition
 
@@ -62,7 +62,7 @@ def test_gears_rub_by_all_that_they_carry(robot_files, standing):
     )
     values = np.array([0.5, 0.0, 0.0, -0.2, 0.0])
     cause = linearise(found.tests, EFFECTS["payload"], "shank", values)
-    cause = found.acting(cause, standing)
+    cause = found.on_all_samples(cause, standing)
     carried = carrying(found.samples, [(cause, values)], 1)
     np.testing.assert_array_equal(carried.value, found.samples.value)
     load = Metadata(payload={"shank": (0.5, 0.0, 0.0, -0.2)})

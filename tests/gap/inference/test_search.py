@@ -10,11 +10,11 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.inference import screen
+from hyperleg_design.gap.inference.effect_traces import NotJudged, traces_of
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.search import Search, traces_of, ungaining
+from hyperleg_design.gap.inference.search import Search, without_gain_from_torques
 
 VISCOUS, DRY = ("viscous_friction", "knee", False), ("coulomb_friction", "hip", False)
 
@@ -31,7 +31,7 @@ def test_the_best_of_all_sets_of_causes_is_found(search, result):
     assert len(single) == 4
     scores = {
         tuple(sorted(names)): search.fits.fit(
-            [single[name] for name in names], search.fits.nothing.scales
+            [single[name] for name in names], search.fits.null.scales
         ).score
         for size in range(1, 4)
         for names in combinations(single, size)
@@ -85,7 +85,7 @@ def test_a_set_is_no_larger_than_the_rules_allow(search):
 def test_what_the_logs_cannot_show_is_not_judged(search):
     places = [("thermal_derating", "m_front"), ("command_delay", "robot"), VISCOUS[:2]]
     traces = traces_of(search.evidence, places, 1)
-    missing = [one for one in traces.values() if isinstance(one, screen.NotJudged)]
+    missing = [one for one in traces.values() if isinstance(one, NotJudged)]
     found = Search(search.evidence, search.rules, places).result()
     assert set(found.not_judged) == set(missing)
     assert missing
@@ -102,9 +102,9 @@ def test_without_references_nothing_acts_in_them(search):
 
 def test_a_cause_that_does_not_gain_by_scaling_torques_is_otherwise_the_same(search):
     (cause,) = search.traces[VISCOUS]
-    assert ungaining(cause) is cause
+    assert without_gain_from_torques(cause) is cause
     scaling = replace(cause, factors=(Factor(0, np.ones((1, 3)), 50.0),))
-    found = ungaining(scaling)
+    found = without_gain_from_torques(scaling)
     assert found.columns is cause.columns
     sizes = np.linspace(-0.3, 0.3, 7)[:, None]
     gains = np.array([[one.factors[0].log(size) for size in sizes] for one in (scaling, found)])
@@ -112,19 +112,19 @@ def test_a_cause_that_does_not_gain_by_scaling_torques_is_otherwise_the_same(sea
     assert (gains[1] <= 1e-12).all()
 
 
-def test_a_cause_that_was_worse_than_none_is_fitted_again_when_it_promises_more(search):
-    nothing = search.fits.nothing
-    promises = search.promises.beside((), nothing.scales)
-    fits = ((one, search.best_of([one], nothing)) for one in promises if not search._known([one]))
-    promise, fit = next(pair for pair in fits if pair[1] and pair[1].score < nothing.score)
-    lacking = nothing.score - fit.score
-    assert not search._hopeful([promise], nothing)
-    assert not search._hopeful([replace(promise, gain=promise.gain + 0.9 * lacking)], nothing)
-    assert search._hopeful([replace(promise, gain=promise.gain + 1.1 * lacking)], nothing)
-    better = replace(nothing, log_evidence=nothing.log_evidence + 1.1 * lacking)
-    worse = replace(nothing, log_evidence=nothing.log_evidence - 1.1 * lacking)
-    assert search._hopeful([promise], better)
-    assert not search._hopeful([promise], worse)
+def test_a_cause_that_was_lowered_the_score_is_fitted_again_when_its_predicted_gain_grows(search):
+    null = search.fits.null
+    proposals = search.proposer.proposals((), null.scales)
+    fits = ((one, search.best_start([one], null)) for one in proposals if not search._known([one]))
+    proposal, fit = next(pair for pair in fits if pair[1] and pair[1].score < null.score)
+    lacking = null.score - fit.score
+    assert not search._worth_fitting([proposal], null)
+    assert not search._worth_fitting([replace(proposal, gain=proposal.gain + 0.9 * lacking)], null)
+    assert search._worth_fitting([replace(proposal, gain=proposal.gain + 1.1 * lacking)], null)
+    better = replace(null, log_evidence=null.log_evidence + 1.1 * lacking)
+    worse = replace(null, log_evidence=null.log_evidence - 1.1 * lacking)
+    assert search._worth_fitting([proposal], better)
+    assert not search._worth_fitting([proposal], worse)
 
 
 def test_causes_that_act_together_are_looked_for_behind_a_torque_of_any_shape(robot_files):
@@ -133,9 +133,9 @@ def test_causes_that_act_together_are_looked_for_behind_a_torque_of_any_shape(ro
     effects = "coulomb_friction", "viscous_friction", "odd_torque"
     search = Search(evidence, InferenceRules(), [(effect, "hip") for effect in effects])
     torque = Candidate("odd_torque", "hip", (search.traces["odd_torque", "hip", False][0],))
-    listed = search._listed(search.fits.fit([torque], search.fits.nothing.scales))
+    listed = search._without_unlisted(search.fits.fit([torque], search.fits.null.scales))
     assert {effect for effect, *_ in listed.names} == set(effects[:2])
-    assert search._listed(listed) is listed
+    assert search._without_unlisted(listed) is listed
 
 
 def test_two_causes_that_gain_only_beside_one_another_are_looked_for_together(search, result):
@@ -143,7 +143,7 @@ def test_two_causes_that_gain_only_beside_one_another_are_looked_for_together(se
     looked = Search.__new__(Search)
     vars(looked).update(vars(search))
 
-    def further(current, flexible=True):
+    def extended(current, flexible=True):
         assert not flexible
         later = {best.names: [one], one.names: [both]}
         return later.get(current.names, [])
@@ -157,9 +157,9 @@ def test_two_causes_that_gain_only_beside_one_another_are_looked_for_together(se
     one = scored(best, "coulomb_friction", -1.0)
     both = scored(one, "viscous_friction", 3.0)
     current = scored(best, "odd_torque", 1.0)
-    looked.further, looked._known = further, lambda _: best
-    looked.fits = SimpleNamespace(settled=lambda hypothesis: hypothesis)
+    looked.extended, looked._known = extended, lambda _: best
+    looked.fits = SimpleNamespace(relinearised=lambda hypothesis: hypothesis)
     looked.fitted = {}
-    assert looked._listed(current) is both
+    assert looked._without_unlisted(current) is both
     both = scored(one, "viscous_friction", 1.5)
-    assert looked._listed(current) is current
+    assert looked._without_unlisted(current) is current

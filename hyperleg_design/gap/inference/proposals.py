@@ -1,4 +1,4 @@
-"""What every effect at every place promises: the log evidence that it would gain beside a
+"""The log evidence that every effect at every place would gain beside a
 hypothesis at fixed scales, by which the search chooses what is worth a full fit.
 """
 
@@ -12,22 +12,23 @@ from scipy.linalg import block_diag
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.spanned import SpannedEffect
-from hyperleg_design.gap.inference import screen
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.endogenous import Factor, factors_of, held_back_whole
+from hyperleg_design.gap.inference.effect_traces import NotJudged, Starts, Traces
+from hyperleg_design.gap.inference.endogenous import Factor, factors_of, held_back_in_all
 from hyperleg_design.gap.inference.hypothesis import ALIKE, Name, Solution, Stack, solve
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.shrinking import Shrinking
+from hyperleg_design.gap.inference.threads import spread
 
 LARGEST = 10.0
 """Size of a start's trace that is tried, over the start's own [-]."""
 
 
 @dataclass(frozen=True, eq=False)
-class Promise:
+class Proposal:
     """An effect at a place, in one variant or from one start, and what it gains at fixed scales."""
 
     effect: str
@@ -67,7 +68,7 @@ class _Beside:
         return 0.0 if self.solution is None else self.solution.gain
 
 
-class Promises:
+class Proposer:
     """Computes the gains of all effects at all places beside hypotheses on one body of evidence.
 
     Args:
@@ -81,7 +82,7 @@ class Promises:
         self,
         evidence: Evidence,
         rules: InferenceRules,
-        traces: Mapping[Name, screen.Traces],
+        traces: Mapping[Name, Traces],
         threads: int = 1,
     ) -> None:
         self.evidence, self.rules, self.threads = evidence, rules, threads
@@ -101,7 +102,7 @@ class Promises:
             they end with the logs under test; none where the logs do not show the effect.
         """
         traced = self.traces[name]
-        if isinstance(traced, screen.NotJudged):
+        if isinstance(traced, NotJudged):
             return [], []
         if isinstance(traced, list):
             return list(traced), [one.columns for one in traced]
@@ -119,7 +120,7 @@ class Promises:
         """
         if name not in self._scaling:
             traced = self.traces[name]
-            assert not isinstance(traced, screen.NotJudged)
+            assert not isinstance(traced, NotJudged)
             self._scaling[name] = (
                 [one.factors for one in traced]
                 if isinstance(traced, list)
@@ -127,7 +128,7 @@ class Promises:
             )
         return self._scaling[name]
 
-    def _of_starts(self, name: Name, starts: screen.Starts) -> Sequence[Sequence[Factor]]:
+    def _of_starts(self, name: Name, starts: Starts) -> Sequence[Sequence[Factor]]:
         """As `scaling`, of the sizes of starts."""
         effect, location, standing = WEIGHED[name[0]], name[1], name[2]
         if not (effect.scales or effect.holds_back):
@@ -143,10 +144,10 @@ class Promises:
                         own.append(replace(whole, slope=size * whole.slope))
         else:
             scaled = [
-                held_back_whole(samples, effect, location, values) for values in starts.values
+                held_back_in_all(samples, effect, location, values) for values in starts.values
             ]
         return [
-            [self.evidence.paying(factor, trace, standing) for factor in own]
+            [self.evidence.with_numbers(factor, trace, standing) for factor in own]
             for own, trace in zip(scaled, starts.traces, strict=True)
         ]
 
@@ -166,7 +167,7 @@ class Promises:
             self._crossings[name] = Crossing.of(self.evidence.channels, np.concatenate(weighted))
         return self._crossings[name]
 
-    def beside(self, causes: Sequence[Cause], scales: tuple[Scales, ...]) -> list[Promise]:
+    def proposals(self, causes: Sequence[Cause], scales: tuple[Scales, ...]) -> list[Proposal]:
         """Gain of every effect at every place beside some causes, best first.
 
         Args:
@@ -178,11 +179,11 @@ class Promises:
         names = [
             name
             for name, traced in self.traces.items()
-            if name not in taken and not isinstance(traced, screen.NotJudged)
+            if name not in taken and not isinstance(traced, NotJudged)
         ]
-        found = screen.spread(lambda name: self._of(name, base), names, self.threads)
-        promises = [one for some in found for one in some]
-        return sorted(promises, key=lambda one: (-one.gain, *one.name, one.variant))
+        found = spread(lambda name: self._of(name, base), names, self.threads)
+        proposals = [one for some in found for one in some]
+        return sorted(proposals, key=lambda one: (-one.gain, *one.name, one.variant))
 
     def information(self, name: Name, scales: tuple[Scales, ...]) -> np.ndarray:
         """Fisher information of the size of each column of an effect at a place, at some scales.
@@ -196,7 +197,7 @@ class Promises:
         """
         products = self.crossing(name).reduced(self.evidence.channels, scales)[1:, 1:]
         traced = self.traces[name]
-        if isinstance(traced, screen.Starts) and traced.weights is not None:
+        if isinstance(traced, Starts) and traced.weights is not None:
             products = traced.weights @ products @ traced.weights.T
         return np.diag(products)
 
@@ -220,7 +221,7 @@ class Promises:
             base = replace(base, solution=self._solved(base, products, np.zeros(0, int)))
         return base
 
-    def _of(self, name: Name, base: _Beside) -> list[Promise]:
+    def _of(self, name: Name, base: _Beside) -> list[Proposal]:
         """All options of an effect at a place."""
         crossing = self.crossing(name)
         options, columns = self.options(name)
@@ -249,20 +250,20 @@ class Promises:
             products[np.ix_(at, at)] += np.tensordot(weight, own, 1) - mine.T @ mine
         products[rows:, :rows] = products[:rows, rows:].T
         traced = self.traces[name]
-        if isinstance(traced, screen.Starts):
+        if isinstance(traced, Starts):
             return self._of_values(name, base, products, traced)
         found, at = [], rows
         each = zip(options, columns, self.scaling(name), strict=True)
         for variant, (cause, own_columns, scaled) in enumerate(each):
             place = np.arange(at, at + len(own_columns))
             gain = self._solved(base, products, place, cause, scaled).gain - base.gain
-            found.append(Promise(*name, variant, gain))
+            found.append(Proposal(*name, variant, gain))
             at += len(own_columns)
         return found
 
     def _of_values(
-        self, name: Name, base: _Beside, products: np.ndarray, starts: screen.Starts
-    ) -> list[Promise]:
+        self, name: Name, base: _Beside, products: np.ndarray, starts: Starts
+    ) -> list[Proposal]:
         """All starts of an effect at a place, and where a linear fit of its span leads.
 
         Args:
@@ -289,14 +290,14 @@ class Promises:
             return []
         promising = np.argsort(np.where(plain, -worth, -np.inf), kind="stable")
         promising = promising[: max(2 * rules.starts, int((~plain).sum()))]
-        promises = []
+        proposals = []
         for number in sorted(promising.tolist()):
             solution = self._solved(
                 base, products, np.array([rows + number]), None, scaling[number]
             )
             gain = solution.gain - base.gain
-            promises.append(Promise(*name, number, gain, tuple(values[number].tolist())))
-        return promises
+            proposals.append(Proposal(*name, number, gain, tuple(values[number].tolist())))
+        return proposals
 
     @staticmethod
     def _worth(base: _Beside, products: np.ndarray, place: np.ndarray) -> np.ndarray:

@@ -13,11 +13,10 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.assembly import evidence_of
 from hyperleg_design.gap.inference.channels.scale_fit import first_scales
 from hyperleg_design.gap.inference.channels.scales import Scales
+from hyperleg_design.gap.inference.effect_traces import NotJudged, Starts, traces_of
 from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
-from hyperleg_design.gap.inference.promises import LARGEST, Promises
+from hyperleg_design.gap.inference.proposals import LARGEST, Proposer
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.screen import NotJudged, Starts
-from hyperleg_design.gap.inference.search import traces_of
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 from tests.gap.inference.channels.test_channel import made
@@ -49,7 +48,7 @@ def test_gains_are_those_of_all_columns_at_once(constant, alone):
     )
     causes = [] if alone else [acting]
     scales = (SCALES, SCALES)
-    found = Promises(evidence, RULES, traces).beside(causes, scales)
+    found = Proposer(evidence, RULES, traces).proposals(causes, scales)
     assert len(found) == 4
     assert [one.gain for one in found] == sorted((one.gain for one in found), reverse=True)
 
@@ -83,7 +82,7 @@ def test_the_starts_that_gain_most_are_among_those_solved(seed):
     starts = rng.standard_normal((12, size)) + rng.standard_normal(size)
     traces = {("command_delay", "robot", True): Starts(np.arange(12.0)[:, None], starts)}
     acting = unbounded("spring", "knee", rng.standard_normal((2, size)))
-    found = Promises(evidence, RULES, traces).beside([acting], (SCALES, SCALES))
+    found = Proposer(evidence, RULES, traces).proposals([acting], (SCALES, SCALES))
 
     def gain(rows):
         products = reduced(evidence, (SCALES, SCALES), np.concatenate([acting.columns, rows]))
@@ -106,10 +105,10 @@ def test_a_start_that_scales_torques_is_charged_for_it_as_a_cause_is(search):
     effect, motor = "transmission_ratio", "m_front"
     places = [(effect, motor)]
     evidence = search.evidence
-    promises = Promises(evidence, search.rules, traces_of(evidence, places, 1))
+    proposer = Proposer(evidence, search.rules, traces_of(evidence, places, 1))
     name = (effect, motor, False)
-    starts = promises.traces[name]
-    for start, (scaled,) in zip(starts.values, promises.scaling(name), strict=True):
+    starts = proposer.traces[name]
+    for start, (scaled,) in zip(starts.values, proposer.scaling(name), strict=True):
         for size in (0.5, 1.0, 3.0):
             scale = 1 + size * (start[0] - 1)
             assert scaled.log(np.array([size])) == pytest.approx(scaled.number * np.log(scale))
@@ -117,14 +116,14 @@ def test_a_start_that_scales_torques_is_charged_for_it_as_a_cause_is(search):
 
 def test_a_start_that_scales_no_torque_is_charged_nothing(search):
     name = ("command_delay", "robot", False)
-    promises = Promises(
+    proposer = Proposer(
         search.evidence, search.rules, {name: Starts(np.ones((3, 1)), np.ones((3, 4)))}
     )
-    assert promises.scaling(name) == [(), (), ()]
+    assert proposer.scaling(name) == [(), (), ()]
 
 
 def promised(signals, name, link, values, beside=0.0):
-    """Promises of an effect at a link whose trace at some values is the residual, or is added to
+    """Proposer of an effect at a link whose trace at some values is the residual, or is added to
     what there is, of a model that is hardly wrong otherwise.
     """
     trace = EFFECTS[name].trace(signals, link, np.array([values]))
@@ -133,9 +132,9 @@ def promised(signals, name, link, values, beside=0.0):
         for kind, rows in signals.residual.items()
     }
     evidence = evidence_of([replace(signals, residual=residual)], [], RULES)
-    promises = Promises(evidence, RULES, traces_of(evidence, [(name, link)], 1))
+    proposer = Proposer(evidence, RULES, traces_of(evidence, [(name, link)], 1))
     scales = (replace(first_scales(one, RULES), standing=np.log(0.1)) for one in evidence.channels)
-    return promises.beside((), tuple(scales))
+    return proposer.proposals((), tuple(scales))
 
 
 @pytest.mark.parametrize("name", ["payload", "link_com"])
