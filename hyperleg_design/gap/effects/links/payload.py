@@ -33,7 +33,7 @@ INWARD, OUTERMOST = 3.0, 2.0
 """Log odds against a load far from the ends of a robot, and for one on a link that carries none, or
 on a base (assumed: loads hang on hands and lie on backs) [nat]."""
 MASS_SOURCE = "UR10e logs with 2.8 kg; tools and batteries, 20 % of what the link moves (assumed)"
-COM_X_SOURCE = "centre of mass in the link's frame: a hand's breadth (assumed)"
+COM_X_SOURCE = "in the link's frame: a hand's breadth, or that of the link itself (assumed)"
 GYRATION_SOURCE = "of a body 10 cm across (assumed)"
 
 
@@ -81,10 +81,15 @@ class Payload(MomentsEffect):
 
     @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """A share of the mass that moves with the link."""
-        found = super().usual(location, subject)
-        found[0] = max(SHARE * carried_mass(subject, location), 0.01)
-        return found
+        """A share of the mass that moves with the link, anywhere along the link: its own centre of
+        mass says how far it reaches from the joint, which is where loads hang least.
+        """
+        usual = super().usual(location, subject)
+        usual[0] = max(SHARE * carried_mass(subject, location), 0.01)
+        own = subject.tree.link_inertial[subject.tree.link(location)]
+        if own[0] > 0:
+            usual[1:4] = np.hypot(usual[1:4], own[1:4] / own[0])
+        return usual
 
     @override
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:

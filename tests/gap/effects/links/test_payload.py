@@ -29,3 +29,18 @@ def test_a_load_is_usual_up_to_the_error_of_the_mass_of_its_link(robot_files):
         assert errors[link][0] == pytest.approx(spread[0])
         assert not errors[link][1:].any()
     assert effect("payload").nuisance_spreads(subject, 0.005) == {}
+
+
+def test_a_load_hangs_anywhere_along_its_link(robot_files):
+    subject = load_subject(str(robot_files["coupled"]), [])
+    payload, tree = effect("payload"), subject.tree
+    alike = [parameter.typical for parameter in payload.parameters[1:4]]
+    reaches = []
+    for link in payload.locations(subject):
+        own = tree.link_inertial[tree.link(link)]
+        centre = own[1:4] / own[0]
+        usual = payload.usual(link, subject)[1:4]
+        assert (usual >= np.maximum(alike, np.abs(centre))).all()
+        assert (usual[centre == 0] == np.array(alike)[centre == 0]).all()
+        reaches.append(np.abs(centre).max())
+    assert max(reaches) > max(alike)  # so that a long link is among them
