@@ -74,7 +74,7 @@ class Evidence:
             if row == factor.row or (others and np.any(trace[place] != 0)):
                 numbers = share * float(self.samples.share[place].sum())
                 numbers += expected if standing else 0.0
-                number, at = max((number, at), (numbers, row), key=lambda one: one[0])
+                number, at = max((number, at), (numbers, row), key=lambda counted: counted[0])
         return replace(factor, number=number, row=at, shows=0.0 if standing else factor.shows)
 
     def scaled(self, cause: Cause) -> Cause:
@@ -206,7 +206,7 @@ def evidence_of(
     subject, healthy = tests[0].subject, (*references, *tests)[0]
     rubbing = replace(subject, coulomb=dry_friction(healthy))
     errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), rubbing)
-    errors.sort(key=lambda one: not one.inertial)
+    errors.sort(key=lambda error: not error.inertial)
     sets = [_set(tests, errors, rules, tested=True)]
     if not len(sets[0].samples.value):
         raise InputError(
@@ -218,9 +218,9 @@ def evidence_of(
     if references:
         sets.append(_set(references, errors, rules, tested=False))
     keys = [(row.residual_name, row.column) for row in sets[0].samples.rows]
-    made = [_channel(key, sets, rules) for key in keys]
+    channels = [_channel(key, sets, rules) for key in keys]
     return Evidence(
-        tuple(channel for channel, _ in made),
+        tuple(channel for channel, _ in channels),
         _joined(sets, rules) if references else sets[0].samples,
         sets[0].samples,
         tuple(tests),
@@ -231,10 +231,10 @@ def evidence_of(
             for place, spreads in effect.usual_errors(rubbing, tests[0].step).items()
             for parameter, spread in enumerate(spreads)
         },
-        tuple(moved for _, moved in made),
+        tuple(moved for _, moved in channels),
         tuple(
             rules.noise.weight * (len(channel.numbers) - len(channel.bands_tested))
-            for channel, _ in made
+            for channel, _ in channels
         ),
     )
 
@@ -242,15 +242,16 @@ def evidence_of(
 def _joined(sets: Sequence[_Set], rules: InferenceRules) -> Samples:
     """Samples of all sets, one after the other."""
     sessions: list[int] = []
-    for one in sets:
+    for logs in sets:
         first = max(sessions, default=-1) + 1
         own = [
-            int(one.samples.session[one.samples.log == i][0]) for i in range(len(one.filtered_logs))
+            int(logs.samples.session[logs.samples.log == i][0])
+            for i in range(len(logs.filtered_logs))
         ]
         sessions += [first + number for number in own]
     return gather(
-        [filtered for one in sets for filtered in one.filtered_logs],
-        [floors for one in sets for floors in one.floors],
+        [filtered for logs in sets for filtered in logs.filtered_logs],
+        [floors for logs in sets for floors in logs.floors],
         sessions,
         rules.noise.information,
     )
@@ -262,18 +263,18 @@ def _set(
     rules: InferenceRules,
     tested: bool,
 ) -> _Set:
-    filtered_logs = [filtering.filtered_log(one, resting.sticking(one)) for one in signals]
-    floors = [noise_model.expected(one, rules.noise) for one in filtered_logs]
-    names = [one.log.metadata.session or f"\0{i}" for i, one in enumerate(signals)]
+    filtered_logs = [filtering.filtered_log(signal, resting.sticking(signal)) for signal in signals]
+    floors = [noise_model.expected(filtered, rules.noise) for filtered in filtered_logs]
+    names = [signal.log.metadata.session or f"\0{i}" for i, signal in enumerate(signals)]
     order = list(dict.fromkeys(names))
     sessions = [order.index(name) for name in names]
     samples = gather(filtered_logs, floors, sessions, rules.noise.information)
     columns = np.zeros((len(errors), len(samples.value)))
     for filtered, places in zip(filtered_logs, samples.where, strict=True):
-        for row, found in nuisance_traces.columns(filtered, errors).items():
-            columns[:, places[row]] = found
-    columns[[one.inertial for one in errors]] *= samples.felt
-    steady = sum(one.inertial for one in errors)
+        for row, traces in nuisance_traces.columns(filtered, errors).items():
+            columns[:, places[row]] = traces
+    columns[[error.inertial for error in errors]] *= samples.felt
+    steady = sum(error.inertial for error in errors)
     return _Set(filtered_logs, samples, floors, columns, steady, tested)
 
 
@@ -283,11 +284,11 @@ def _channel(
     """A channel, and the share of its numbers under test in which the torque of its drives is no
     noise.
     """
-    parts = [(one, row) for one in sets if (row := one.row(key)) is not None]
-    made = [one.shapes(key, rules.discrepancy.waves) for one, _ in parts]
+    parts = [(logs, row) for logs in sets if (row := logs.row(key)) is not None]
+    discrepancies = [logs.shapes(key, rules.discrepancy.waves) for logs, _ in parts]
     signals = sets[0].filtered_logs[0].signals
-    size = np.mean([square for _, square, _ in made], 0)
-    strength = float(np.mean([square for *_, square in made]))
+    size = np.mean([square for _, square, _ in discrepancies], 0)
+    strength = float(np.mean([square for *_, square in discrepancies]))
     if key[0] == "motion":
         strength += float(dry_friction(signals)[key[1]]) ** 2
     scale = rules.discrepancy.share * np.sqrt(strength / np.maximum(size, 1e-300))
@@ -296,13 +297,13 @@ def _channel(
     if key[0] == "motion":
         own_noise, moved = _placeholder(key, sets)
     white, cells = [], []
-    for number, ((one, row), (columns, *_)) in enumerate(zip(parts, made, strict=True)):
-        samples = one.samples
+    for number, ((logs, row), (columns, *_)) in enumerate(zip(parts, discrepancies, strict=True)):
+        samples = logs.samples
         own = np.flatnonzero(samples.row == row)
-        first = 0 if one.tested else len(sets[0].samples.value)
+        first = 0 if logs.tested else len(sets[0].samples.value)
         whole = np.concatenate(
             [
-                one.errors[:, own],
+                logs.errors[:, own],
                 columns[:, own] * scale[:, None],
                 *([] if own_noise is None else [own_noise[number][:, own]]),
                 samples.value[None, own],
@@ -325,7 +326,7 @@ def _channel(
         key[0],
         key[1],
         parts[0][0].samples.rows[parts[0][1]].name,
-        np.array([one @ one.T for one in white]),
+        np.array([cell @ cell.T for cell in white]),
         np.array([cell[2] for cell in cells]),
         np.array([sessions.index(cell[0]) for cell in cells]),
         np.array([bands.index(cell[1]) for cell in cells]),
@@ -346,10 +347,10 @@ def _placeholder(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.nd
     must not gain by it: the load, and its second derivative, have a prior deviation of the share of
     the load that the expected noise is.
     """
-    found = [np.zeros((2 * MOST_BANDS, len(one.samples.value))) for one in sets]
+    by_set = [np.zeros((2 * MOST_BANDS, len(logs.samples.value))) for logs in sets]
     whole, clean = 0.0, 0.0
-    for one, columns in zip(sets, found, strict=True):
-        for filtered, places in zip(one.filtered_logs, one.samples.where, strict=True):
+    for logs, columns in zip(sets, by_set, strict=True):
+        for filtered, places in zip(logs.filtered_logs, logs.samples.where, strict=True):
             place = place_of(filtered.rows, *key)
             if place is None:
                 continue
@@ -362,7 +363,7 @@ def _placeholder(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.nd
             )[:, 0]
             slow, fast, driven = filtered.sample(place, np.stack([torque, twice, given]))
             _, rate = noise_model.of_acceleration(filtered, place)
-            expected = one.samples.floor[places[place]] ** 2
+            expected = logs.samples.floor[places[place]] ** 2
             band = filtered.labels(place)[0]
             for b in np.unique(band).tolist():
                 mine = band == b
@@ -372,10 +373,10 @@ def _placeholder(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.nd
                     for torques in (slow, driven)
                 )
                 at = np.arange(places[place].start, places[place].stop)[mine]
-                if one.tested:
-                    number = float(one.samples.share[at].sum())
+                if logs.tested:
+                    number = float(logs.samples.share[at].sum())
                     whole = whole + number
                     clean = clean + (1 - idle) * number
                 columns[2 * b, at] = share * slow[mine]
                 columns[2 * b + 1, at] = share * fast[mine] / float(np.mean(rate[mine]))
-    return found, clean / max(whole, 1e-300)
+    return by_set, clean / max(whole, 1e-300)

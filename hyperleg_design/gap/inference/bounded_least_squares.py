@@ -33,10 +33,10 @@ def within_bounds(
     if free.any():
         inner = matrix[np.ix_(free, free)]
         rest = right[free] - matrix[np.ix_(free, ~free)] @ phi[~free]
-        found = np.linalg.solve(inner, rest)
-        if (found < low[free]).any() or (found > high[free]).any():
-            found = _within(inner, rest, low[free], high[free])
-        phi[free] = found
+        inner_phi = np.linalg.solve(inner, rest)
+        if (inner_phi < low[free]).any() or (inner_phi > high[free]).any():
+            inner_phi = _within(inner, rest, low[free], high[free])
+        phi[free] = inner_phi
     return phi
 
 
@@ -50,16 +50,16 @@ def _within(matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.nda
     below = above = np.zeros(len(right), bool)
     for _ in range(TURNS):
         held = below | above
-        found, free = np.where(below, low, high), ~held
+        phi, free = np.where(below, low, high), ~held
         if free.any():
-            rest = right[free] - matrix[np.ix_(free, held)] @ found[held]
-            found[free] = np.linalg.solve(matrix[np.ix_(free, free)], rest)
-        slope = right - matrix @ found
+            rest = right[free] - matrix[np.ix_(free, held)] @ phi[held]
+            phi[free] = np.linalg.solve(matrix[np.ix_(free, free)], rest)
+        slope = right - matrix @ phi
         before = below, above
-        below = (free & (found < low)) | (below & (slope < 0))
-        above = (free & (found > high)) | (above & (slope > 0))
+        below = (free & (phi < low)) | (below & (slope < 0))
+        above = (free & (phi > high)) | (above & (slope > 0))
         if (below == before[0]).all() and (above == before[1]).all():
-            return found
+            return phi
     return _by_least_squares(matrix, right, low, high)
 
 
@@ -73,6 +73,6 @@ def _by_least_squares(
     square, axes = np.linalg.eigh(matrix / np.outer(size, size))
     root = np.sqrt(np.maximum(square, SINGULAR))
     wanted, bounds = axes.T @ (right / size) / root, (low * size, high * size)
-    found = lsq_linear(root[:, None] * axes.T, wanted, bounds, method="bvls")
-    inside = np.clip(found.x / size, low, high)
-    return np.where(found.active_mask < 0, low, np.where(found.active_mask > 0, high, inside))
+    solution = lsq_linear(root[:, None] * axes.T, wanted, bounds, method="bvls")
+    inside = np.clip(solution.x / size, low, high)
+    return np.where(solution.active_mask < 0, low, np.where(solution.active_mask > 0, high, inside))

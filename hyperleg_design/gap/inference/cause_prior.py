@@ -42,10 +42,10 @@ def log_prior(
         The log probability, up to a constant [nat].
     """
     names = [candidate.name for candidate in hypothesis.candidates]
-    found, place = log_chance(names, evidence, rules, count), 0
-    for one in hypothesis.candidates:
+    total, place = log_chance(names, evidence, rules, count), 0
+    for candidate in hypothesis.candidates:
         odds = []
-        for cause in one.causes:
+        for cause in candidate.causes:
             values = hypothesis.values(place)
             odds.append(
                 WEIGHED[cause.effect].odds(cause.location, evidence.signals[0].subject, values)
@@ -53,10 +53,10 @@ def log_prior(
                 + (0.0 if cause.standing else beyond_usual(hypothesis, place, evidence, rules))
             )
             place += 1
-        found += float(np.mean(odds))
-        if one.location == EVERYWHERE:
-            found += _one_way(one, hypothesis, place, rules)
-    return found
+        total += float(np.mean(odds))
+        if candidate.location == EVERYWHERE:
+            total += _one_way(candidate, hypothesis, place, rules)
+    return total
 
 
 def log_chance(
@@ -185,9 +185,9 @@ def prior_odds(cause: Cause, values: np.ndarray) -> float:
     """
     free = int((~cause.shape).sum() if cause.linear else (cause.high > cause.low).sum())
     effect = WEIGHED[cause.effect]
-    found = effect.rare if effect.flexible else -PER_PARAMETER * free + effect.rare
+    odds = effect.rare if effect.flexible else -PER_PARAMETER * free + effect.rare
     if cause.unseen:
-        found += effect.unseen
+        odds += effect.unseen
     if effect.described and values[0] < HALF * cause.low[0] < 0:
-        found -= MISSING
-    return found + effect.size_odds(values, cause.usual, cause.declared, cause.beyond)
+        odds -= MISSING
+    return odds + effect.size_odds(values, cause.usual, cause.declared, cause.beyond)

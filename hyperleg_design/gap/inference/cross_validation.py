@@ -55,7 +55,7 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
     trace, unlisted = np.zeros(len(fold)), np.zeros(len(fold))
     for left_out in range(samples.folds):
         fitted = (fold != left_out) | ~tested
-        channels = tuple(_without(one, fitted) for one in evidence.channels)
+        channels = tuple(_without(channel, fitted) for channel in evidence.channels)
         left, own, odd = np.zeros((3, len(fold)))
         if stack is not None:
             last = bool(stack.constant.any())
@@ -112,6 +112,6 @@ def healthy_share(channel: Channel, scales: Scales, rules: InferenceRules) -> fl
 def _without(channel: Channel, fitted: np.ndarray) -> Channel:
     """A channel whose samples are those of a mask `(S,)`."""
     white = tuple(
-        one * fitted[place] for one, place in zip(channel.whitened, channel.places, strict=True)
+        cell * fitted[place] for cell, place in zip(channel.whitened, channel.places, strict=True)
     )
-    return replace(channel, whitened=white, products=np.array([one @ one.T for one in white]))
+    return replace(channel, whitened=white, products=np.array([cell @ cell.T for cell in white]))

@@ -82,7 +82,7 @@ def detectable(search: Search, beside: Hypothesis | None = None) -> tuple[Detect
                 entries.append((name, place, i, float(change[first]), most[i], information[first]))
     rules = search.rules.cause
     chance = rules.changed if search.evidence.references else rules.probability
-    found = []
+    sizes_shown = []
     for name, place, i, unit_size, limit, own in entries:
         hypotheses = len(search.count) * search.count[name]
         odds = float(np.log(hypotheses / chance))
@@ -93,8 +93,8 @@ def detectable(search: Search, beside: Hypothesis | None = None) -> tuple[Detect
         parameter = EFFECTS[name].parameters[i]
         if 0 < size <= limit:
             unit = unit_at(subject, EFFECTS[name].kind, place, parameter.unit)
-            found.append(Detectable(name, place, parameter.name, float(size), unit))
-    return tuple(found)
+            sizes_shown.append(Detectable(name, place, parameter.name, float(size), unit))
+    return tuple(sizes_shown)
 
 
 def usual_shape(effect: Effect, place: str, subject: Subject, values: np.ndarray) -> np.ndarray:

@@ -94,8 +94,8 @@ def traces_of(
     traced = spread(lambda place: _traced(evidence, place), places, threads)
     by_name: dict[Name, Traces] = {}
     for (effect, location), both in zip(places, traced, strict=True):
-        for standing, one in zip((False, True), both, strict=False):
-            by_name[effect, location, standing] = one
+        for standing, traces in zip((False, True), both, strict=False):
+            by_name[effect, location, standing] = traces
     return by_name
 
 
@@ -111,10 +111,10 @@ def _traced(evidence: Evidence, place: tuple[str, str]) -> list[Traces]:
     if isinstance(whole, list):
         own = [
             evidence.on_all_samples(cut, False)
-            for one in whole
-            if (cut := under_test(one, evidence.tests)) is not None
+            for cause in whole
+            if (cut := under_test(cause, evidence.tests)) is not None
         ]
-        whole = [evidence.on_all_samples(one, True) for one in whole]
+        whole = [evidence.on_all_samples(cause, True) for cause in whole]
     else:
         own = replace(whole, columns=whole.columns[:, :count])
         if reach(evidence.tests, own.traces) < SHOWN:
@@ -184,13 +184,13 @@ def lacking(effect: Effect, location: str, signals: Sequence[Signals]) -> str:
 
 def _variants(samples: Samples, effect: Effect, location: str) -> np.ndarray:
     """Of all logs, each once."""
-    found = np.concatenate([effect.variants(s.signals, location) for s in samples.filtered_logs])
-    return np.unique(found, axis=0)
+    variants = np.concatenate([effect.variants(s.signals, location) for s in samples.filtered_logs])
+    return np.unique(variants, axis=0)
 
 
 def _starts(samples: Samples, effect: Effect, location: str) -> np.ndarray:
     """Starts of all logs, each once; the first of every log before the second of any."""
     logs = [list(effect.starts(s.signals, location)) for s in samples.filtered_logs]
-    found = np.array([start for turn in zip_longest(*logs) for start in turn if start is not None])
-    _, first = np.unique(np.round(found, 12), axis=0, return_index=True)
-    return found[np.sort(first)][:MOST_STARTS]
+    starts = np.array([start for turn in zip_longest(*logs) for start in turn if start is not None])
+    _, first = np.unique(np.round(starts, 12), axis=0, return_index=True)
+    return starts[np.sort(first)][:MOST_STARTS]

@@ -64,8 +64,8 @@ class Factor:
         Returns:
             The term [nat]; of a gain only the share `shows`.
         """
-        found = self.number * float(np.mean(np.log(self._left(phi))))
-        return self.shows * found if found > 0 else found
+        term = self.number * float(np.mean(np.log(self._left(phi))))
+        return self.shows * term if term > 0 else term
 
     def slopes(self, phi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Compute derivatives of `log`.
@@ -94,13 +94,13 @@ def joined(
     Returns:
         Places of the parameters of each, in the order that it takes them.
     """
-    found: list[tuple[list[int], Factor | Shrinking]] = []
+    groups: list[tuple[list[int], Factor | Shrinking]] = []
     same: dict[int, list[tuple[int, Factor]]] = {}
     for place, term in factors:
         if isinstance(term, Factor):
             same.setdefault(term.row, []).append((place, term))
         else:
-            found.append(([place], term))
+            groups.append(([place], term))
     for own in same.values():
         terms = [term for _, term in own]
         longest = max(terms, key=lambda term: (term.slope.shape[1], term.number))
@@ -112,8 +112,8 @@ def joined(
             slope[row : row + len(term.slope), : term.slope.shape[1]] = term.slope
             row += len(term.slope)
         whole = replace(longest, slope=slope, level=level, shows=min(term.shows for term in terms))
-        found.append(([place for place, _ in own], whole))
-    return found
+        groups.append(([place for place, _ in own], whole))
+    return groups
 
 
 def factors_of(

@@ -77,12 +77,12 @@ class Hypothesis:
     @property
     def causes(self) -> tuple[Cause, ...]:
         """Causes of all candidates of the hypothesis."""
-        return tuple(cause for one in self.candidates for cause in one.causes)
+        return tuple(cause for candidate in self.candidates for cause in candidate.causes)
 
     @property
     def names(self) -> tuple[Name, ...]:
         """Of the candidates, sorted."""
-        return tuple(sorted(one.name for one in self.candidates))
+        return tuple(sorted(candidate.name for candidate in self.candidates))
 
     @cached_property
     def parts(self) -> list[slice]:
@@ -155,21 +155,21 @@ class Stack:
             weight: what a trace is multiplied by before products are taken `(S,)`.
         """
         constant = np.zeros(len(weight))
-        for one in causes:
-            if not one.linear:
-                constant = constant + one.constant
-        ends = np.cumsum([0, *(len(one.nulls) for one in causes)]).tolist()
+        for cause in causes:
+            if not cause.linear:
+                constant = constant + cause.constant
+        ends = np.cumsum([0, *(len(cause.nulls) for cause in causes)]).tolist()
         factors = tuple(
             (start + term.parameter, term)
-            for start, one in zip(ends, causes, strict=False)
-            for term in one.factors
+            for start, cause in zip(ends, causes, strict=False)
+            for term in cause.factors
         )
         return cls(
-            np.concatenate([one.columns for one in causes]) * weight,
+            np.concatenate([cause.columns for cause in causes]) * weight,
             constant * weight,
-            np.concatenate([(one.low - one.nulls) / one.usual for one in causes]),
-            np.concatenate([(one.high - one.nulls) / one.usual for one in causes]),
-            np.concatenate([one.shape for one in causes]),
+            np.concatenate([(cause.low - cause.nulls) / cause.usual for cause in causes]),
+            np.concatenate([(cause.high - cause.nulls) / cause.usual for cause in causes]),
+            np.concatenate([cause.shape for cause in causes]),
             factors,
         )
 
@@ -234,11 +234,11 @@ def solve(
         begin[: len(near)] = near
         wide[: len(near)] = np.maximum(rules.cause.width, np.abs(near))
         firsts = [wide]
-    found = [
+    fits = [
         _solve(normal, products[1:, 0], low, high, shape, rules, groups, begin, first)
         for first in firsts
     ]
-    theta, precision, gain, occam = max(found, key=lambda one: one[2])
+    theta, precision, gain, occam = max(fits, key=lambda fit: fit[2])
     covariance = np.linalg.inv(precision) if len(theta) else np.zeros((0, 0))
     return Solution(theta, covariance, gain, occam)
 
@@ -311,7 +311,7 @@ def shifted(products: np.ndarray, last: bool) -> np.ndarray:
     """
     if not last:
         return products
-    found = products.copy()
-    found[0] -= products[-1]
-    found[:, 0] -= found[:, -1]
-    return found[:-1, :-1]
+    shifted_products = products.copy()
+    shifted_products[0] -= products[-1]
+    shifted_products[:, 0] -= shifted_products[:, -1]
+    return shifted_products[:-1, :-1]

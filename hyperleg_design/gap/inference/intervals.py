@@ -39,7 +39,7 @@ def intervals(
     Returns:
         Values by the name of the parameter, and what follows from them, in the units of the place.
     """
-    found = {}
+    stated = {}
     effect = EFFECTS[cause.effect]
     for i, parameter in enumerate(effect.parameters):
         rough = effect.rough.get(parameter.name, 0.0) * abs(values[i])
@@ -48,12 +48,12 @@ def intervals(
         reach = NORMAL * np.hypot(deviation[i], rough)
         low, high = max(values[i] - reach, cause.low[i]), min(values[i] + reach, cause.high[i])
         unit = unit_at(subject, effect.kind, cause.location, parameter.unit)
-        found[parameter.name] = Value(float(values[i]), float(low), float(high), unit)
-    return found | _derived(subject, cause, values, found)
+        stated[parameter.name] = Value(float(values[i]), float(low), float(high), unit)
+    return stated | _derived(subject, cause, values, stated)
 
 
 def _derived(
-    subject: Subject, cause: Cause, values: np.ndarray, found: dict[str, Value]
+    subject: Subject, cause: Cause, values: np.ndarray, stated: dict[str, Value]
 ) -> dict[str, Value]:
     """The same in words that people use, with intervals from those of the parameters, each moved
     alone.
@@ -62,14 +62,14 @@ def _derived(
     middle = effect.derived(cause.location, values, subject)
     below, above = dict.fromkeys(middle, 0.0), dict.fromkeys(middle, 0.0)
     for i, parameter in enumerate(effect.parameters):
-        own, interval = np.arange(len(values)) == i, found[parameter.name]
+        own, interval = np.arange(len(values)) == i, stated[parameter.name]
         ends = [np.where(own, end, values) for end in (interval.low, interval.high)]
         tried = [effect.derived(cause.location, end, subject) for end in ends]
         for name, (value, _) in middle.items():
             moves = [t[name][0] - value for t in tried if name in t]
             below[name] = float(np.hypot(below[name], min(*moves, 0.0)))
             above[name] = float(np.hypot(above[name], max(*moves, 0.0)))
-    told = {
+    derived = {
         name: Value(
             value,
             value - below[name],
@@ -79,5 +79,7 @@ def _derived(
         for name, (value, unit) in middle.items()
     }
     return {
-        name: one for name, one in told.items() if np.isfinite([one.value, one.low, one.high]).all()
+        name: value
+        for name, value in derived.items()
+        if np.isfinite([value.value, value.low, value.high]).all()
     }

@@ -42,10 +42,10 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         nulls = np.where(shape, values, nulls)
         low, high = np.where(shape, nulls, low), np.where(shape, nulls, high)
         settings, divide = nulls + np.diag(np.where(shape, 0.0, usual)), np.ones(k)
-        found = trace_columns(samples, effect, location, settings)
-        if found is None:
+        traced = trace_columns(samples, effect, location, settings)
+        if traced is None:
             return None
-        columns, constant = found, np.zeros(found.shape[1])
+        columns, constant = traced, np.zeros(traced.shape[1])
     else:
         values = np.clip(values, low, high)
         fixed = effect.fixed(values)
@@ -55,12 +55,12 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         divide = (tried - values) / usual
         some = np.flatnonzero(divide)
         settings = np.concatenate([(values + np.diag(tried - values))[some], values[None]])
-        found = trace_columns(samples, effect, location, settings)
-        if found is None:
+        traced = trace_columns(samples, effect, location, settings)
+        if traced is None:
             return None
-        columns = np.zeros((k, found.shape[1]))
-        columns[some] = (found[:-1] - found[-1]) / divide[some, None]
-        constant = found[-1] - ((values - nulls) / usual) @ columns
+        columns = np.zeros((k, traced.shape[1]))
+        columns[some] = (traced[:-1] - traced[-1]) / divide[some, None]
+        constant = traced[-1] - ((values - nulls) / usual) @ columns
     payload = subject.declared.payload
     masses = (float(payload[at][0]) for at in payload if _same_place(subject, at, location))
     declared = max(masses, default=0.0)
@@ -106,10 +106,10 @@ def trace_columns(
     )
 
 
-def _same_place(subject: Subject, one: str, other: str) -> bool:
+def _same_place(subject: Subject, first: str, other: str) -> bool:
     tree = subject.tree
     known = (*tree.links, *tree.joints)
-    return one in known and other in known and tree.link(one) == tree.link(other)
+    return first in known and other in known and tree.link(first) == tree.link(other)
 
 
 def reach(samples: Samples, columns: np.ndarray) -> float:

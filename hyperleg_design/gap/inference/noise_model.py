@@ -64,17 +64,17 @@ def _row(
     still: dict[str, np.ndarray],
     rules: NoiseRules,
 ) -> np.ndarray:
-    signals, one = filtered_log.signals, filtered_log.rows[row]
-    moving = load[one.residual_name][:, one.column]
-    constant = still[one.residual_name][one.column]
+    signals, place = filtered_log.signals, filtered_log.rows[row]
+    moving = load[place.residual_name][:, place.column]
+    constant = still[place.residual_name][place.column]
     residual = np.where(
-        filtered_log.mask[row], signals.residual[one.residual_name][:, one.column], 0.0
+        filtered_log.mask[row], signals.residual[place.residual_name][:, place.column], 0.0
     )
     density = _capped(
         filtered_log,
         row,
         residual,
-        white_density(residual, filtered_log.mask[row], one.cutoff, signals.step),
+        white_density(residual, filtered_log.mask[row], place.cutoff, signals.step),
     )
     samples = filtered_log.sample(row, np.nan_to_num(moving)[None])[0]
     level, _, _ = filtered_log.labels(row)
@@ -85,7 +85,7 @@ def _row(
     )
     turning = _turning(filtered_log, row) if constant > 0 else np.zeros(len(signals.time))
     sinking = _smoothed(_sinking(filtered_log, row) ** 2, NEAR / signals.step)
-    found, start = np.empty(len(samples)), 0
+    noise_level, start = np.empty(len(samples)), 0
     for band, white in zip(filtered_log.bands[row], density, strict=True):
         part = slice(start, start + len(band.kept))
         start = part.stop
@@ -99,21 +99,21 @@ def _row(
         dry = ((rules.friction + rules.turning * _at(turning, band)) * constant) ** 2 / len(
             filtered_log.bands[row]
         )
-        found[part] = np.sqrt(
+        noise_level[part] = np.sqrt(
             noise + share + dry + _at(sinking, band) + (LEAST * _strength(filtered_log, row)) ** 2
         )
     assert len(level) == start
-    return found
+    return noise_level
 
 
 def _sinking(filtered_log: FilteredLog, row: int) -> np.ndarray:
     """What the height of a foot leaves open of the ground's vertical force `(t,)` [N]; 0
     elsewhere.
     """
-    one = filtered_log.rows[row]
-    if one.residual_name != "ground" or one.column % 3 != 2:
+    place = filtered_log.rows[row]
+    if place.residual_name != "ground" or place.column % 3 != 2:
         return np.zeros(len(filtered_log.signals.time))
-    return np.nan_to_num(footings(filtered_log.signals)[one.column // 3].doubt())
+    return np.nan_to_num(footings(filtered_log.signals)[place.column // 3].doubt())
 
 
 def _turning(filtered_log: FilteredLog, row: int) -> np.ndarray:
@@ -134,37 +134,37 @@ def _loads(filtered_log: FilteredLog) -> tuple[dict[str, np.ndarray], dict[str, 
     """
     signals = filtered_log.signals
     subject = signals.subject
-    found: dict[str, np.ndarray] = {}
+    moving: dict[str, np.ndarray] = {}
     still: dict[str, np.ndarray] = {}
     for residual_name, residual in signals.residual.items():
         still[residual_name] = np.zeros(residual.shape[1])
         if residual_name == "motion":
-            found[residual_name] = applied(subject.joint_from_motor, signals.believed)
+            moving[residual_name] = applied(subject.joint_from_motor, signals.believed)
             still[residual_name] = dry_friction(signals)
         elif residual_name == "base" and signals.contact is not None:
             total = np.linalg.norm(np.nan_to_num(signals.contact).sum(1), axis=-1)
-            found[residual_name] = np.stack([total] * 3 + [0.2 * total] * 3, -1)
+            moving[residual_name] = np.stack([total] * 3 + [0.2 * total] * 3, -1)
         elif residual_name == "ground" and signals.contact is not None:
-            found[residual_name] = np.repeat(np.linalg.norm(signals.contact, axis=-1), 3, axis=-1)
+            moving[residual_name] = np.repeat(np.linalg.norm(signals.contact, axis=-1), 3, axis=-1)
         elif residual_name == "transmission":
-            found[residual_name] = signals.velocity @ subject.joint_from_motor
+            moving[residual_name] = signals.velocity @ subject.joint_from_motor
         elif signals.command is not None and residual.shape[1] == signals.command.shape[1]:
-            found[residual_name] = signals.command
+            moving[residual_name] = signals.command
         else:
-            found[residual_name] = residual
-    return found, still
+            moving[residual_name] = residual
+    return moving, still
 
 
 def _strength(filtered_log: FilteredLog, row: int) -> float:
-    one, subject = filtered_log.rows[row], filtered_log.signals.subject
-    if one.residual_name == "motion":
-        return float(joint_strength(subject)[one.column])
-    if one.residual_name in ("base", "ground"):
+    place, subject = filtered_log.rows[row], filtered_log.signals.subject
+    if place.residual_name == "motion":
+        return float(joint_strength(subject)[place.column])
+    if place.residual_name in ("base", "ground"):
         return 100.0
-    if one.residual_name == "transmission":
-        fastest = float(subject.no_load_speed[one.column])
+    if place.residual_name == "transmission":
+        fastest = float(subject.no_load_speed[place.column])
         return fastest if np.isfinite(fastest) else FAST
-    limit = float(subject.torque_limit[one.column])
+    limit = float(subject.torque_limit[place.column])
     return limit if np.isfinite(limit) else 1.0
 
 
@@ -175,36 +175,38 @@ def _capped(filtered_log: FilteredLog, row: int, residual: np.ndarray, white: fl
     What knocks or rings at high frequencies is not white: it is no reason for noise at low ones.
     """
     samples, start = filtered_log.sample(row, residual[None])[0], 0
-    found = []
+    densities = []
     for band in filtered_log.bands[row]:
         part = samples[start : start + len(band.kept)]
         start += len(band.kept)
-        found.append(
+        densities.append(
             AT_MOST * float(np.mean(part**2)) / (band.high - band.low)
             if len(part) >= ENOUGH
             else np.inf
         )
-    return np.minimum.accumulate(np.r_[white, found[::-1]])[:0:-1]
+    return np.minimum.accumulate(np.r_[white, densities[::-1]])[:0:-1]
 
 
 def _of_acceleration(filtered_log: FilteredLog, row: int, low: float, high: float) -> np.ndarray:
     """Variance in a band of the torque that noise of positions feigns at each tick, twice
     differentiated, below the smoother's crossover `(t,)`.
     """
-    signals, one = filtered_log.signals, filtered_log.rows[row]
+    signals, place = filtered_log.signals, filtered_log.rows[row]
     if (
-        one.residual_name != "motion"
+        place.residual_name != "motion"
         or signals.noise is None
-        or not np.isfinite(signals.noise[one.column])
+        or not np.isfinite(signals.noise[place.column])
     ):
         return np.zeros(len(signals.time))
     square = _shaken(signals)
     stiff = _feedback(filtered_log, row)
     turned = (2 * np.pi) ** 4 * (high**5 - low**5) / 5
-    own = inertias_at(signals, one.column)
-    found = turned * np.sum(own**2 * square, -1) + stiff**2 * (high - low) * square[:, one.column]
+    own = inertias_at(signals, place.column)
+    variance = (
+        turned * np.sum(own**2 * square, -1) + stiff**2 * (high - low) * square[:, place.column]
+    )
     return np.asarray(
-        _smoothed(2 * signals.step * found, 0.5 / (high - low) / signals.step)
+        _smoothed(2 * signals.step * variance, 0.5 / (high - low) / signals.step)
     )  # as long as a sample of the band sees
 
 
@@ -218,7 +220,7 @@ def _shaken(signals: Signals) -> np.ndarray:
     """
     assert signals.noise is not None
     level = np.nan_to_num(signals.noise)
-    found = np.broadcast_to(level**2, signals.position.shape).copy()
+    variance = np.broadcast_to(level**2, signals.position.shape).copy()
     raw = signals.log.stack("position", signals.subject.joints)
     for joint, samples in enumerate(raw.T):
         square = np.nan_to_num(signals.velocity[:, joint]) ** 2
@@ -230,8 +232,8 @@ def _shaken(signals: Signals) -> np.ndarray:
         ] ** 2
         speed = np.interp(signals.log.time[known], signals.time, square)
         share = _share(beside, speed / square.mean())
-        found[:, joint] *= 1 - share + share * square / square.mean()
-    return found
+        variance[:, joint] *= 1 - share + share * square / square.mean()
+    return variance
 
 
 def of_acceleration(filtered_log: FilteredLog, row: int) -> tuple[np.ndarray, np.ndarray]:
@@ -355,9 +357,9 @@ def _feedback(filtered_log: FilteredLog, row: int) -> float:
     """Torque over noise of position where the torque is computed from the logged position
     [Nm/rad].
     """
-    signals, one = filtered_log.signals, filtered_log.rows[row]
+    signals, place = filtered_log.signals, filtered_log.rows[row]
     gain = (
-        float(signals.subject.gains[one.column, 0])
+        float(signals.subject.gains[place.column, 0])
         if signals.measured is None and signals.target is not None
         else 0.0
     )

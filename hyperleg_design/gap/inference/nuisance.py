@@ -100,40 +100,44 @@ def nuisance_parameters(
         rubbing: the robot with the dry friction that its logs show, where the model has less.
     """
     usual = _Usual(rubbing or subject, step)
-    found: list[NuisanceParameter] = []
+    parameters: list[NuisanceParameter] = []
     for j, joint in enumerate(subject.joints):
         if subject.coulomb[j] > 0:
-            found += [
+            parameters += [
                 NuisanceParameter(TURNOVER, joint, i, OF_WAY if i else AT_ONCE)
                 for i in range(1 + len(WAYS))
             ]
-            found += [NuisanceParameter(SWUNG, joint, i, OF_SWING) for i in range(len(SWINGS))]
+            parameters += [NuisanceParameter(SWUNG, joint, i, OF_SWING) for i in range(len(SWINGS))]
         elif calibrated:  # what is calibrated turns over at once already
-            found += [NuisanceParameter(TURNOVER, joint, 1 + i, OF_WAY) for i in range(len(WAYS))]
-        found += usual.at("joint", joint)
+            parameters += [
+                NuisanceParameter(TURNOVER, joint, 1 + i, OF_WAY) for i in range(len(WAYS))
+            ]
+        parameters += usual.at("joint", joint)
     late, driven = lateness(step), set(driven_motors(subject))
-    found += usual.of("robot")
-    found += [NuisanceParameter(effect, ROBOT, 0, late) for effect in (TORQUES_LATE, FORCES_LATE)]
-    found += [
+    parameters += usual.of("robot")
+    parameters += [
+        NuisanceParameter(effect, ROBOT, 0, late) for effect in (TORQUES_LATE, FORCES_LATE)
+    ]
+    parameters += [
         NuisanceParameter(STEPPED, ROBOT, 0, OF_STEPPED),
         NuisanceParameter(FILTERED, ROBOT, 0, OF_FILTER),
     ]
-    found += [
+    parameters += [
         NuisanceParameter(effect, foot, 0, SOLES)
         for foot in subject.feet
         for effect in (SOLE, SOLE_GIVES)
     ]
-    found += [NuisanceParameter(FORCES_SCALED, foot, 0, OF_FORCES) for foot in subject.feet]
+    parameters += [NuisanceParameter(FORCES_SCALED, foot, 0, OF_FORCES) for foot in subject.feet]
     for m, motor in enumerate(subject.motors):
-        found += usual.at("motor", motor)
+        parameters += usual.at("motor", motor)
         if motor in driven:
-            found += [
+            parameters += [
                 NuisanceParameter(GEARED, motor, 0, OF_SPEED),
                 NuisanceParameter(TOLD_LATE, motor, 0, late),
                 NuisanceParameter(GIVING, motor, 0, _give(subject, m)),
             ]
-    found += usual.of("link") + usual.of("sensor") + usual.of("foot")
-    return [one for one in found if one.spread > 0]
+    parameters += usual.of("link") + usual.of("sensor") + usual.of("foot")
+    return [parameter for parameter in parameters if parameter.spread > 0]
 
 
 class _Usual:

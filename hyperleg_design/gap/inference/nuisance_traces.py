@@ -67,37 +67,37 @@ def traces(signals: Signals, errors: Sequence[NuisanceParameter]) -> list[dict[s
         signals, believed=np.where(np.isfinite(needed), needed, signals.believed), target=None
     )
     sources = {LOGGED: signals, NEEDED: modelled, STEERED: _steered(signals)}
-    found = []
-    for one in errors:
-        if one.effect in (TURNOVER, SWUNG):
-            trace = (_turnover if one.effect == TURNOVER else _swung)(
-                signals, one.location, one.parameter
+    by_parameter = []
+    for error in errors:
+        if error.effect in (TURNOVER, SWUNG):
+            trace = (_turnover if error.effect == TURNOVER else _swung)(
+                signals, error.location, error.parameter
             )
-            found.append({b: v * one.spread for b, v in trace.items()})
+            by_parameter.append({b: v * error.spread for b, v in trace.items()})
             continue
-        if one.effect in UNLISTED:
+        if error.effect in UNLISTED:
             unlisted = {STEPPED: _stepped, FILTERED: _filtered}.get(
-                one.effect, _speeds if one.effect in SPEEDS else _told
+                error.effect, _speeds if error.effect in SPEEDS else _told
             )
-            found.append(unlisted(signals, one))
+            by_parameter.append(unlisted(signals, error))
             continue
-        effect = EFFECTS[one.effect]
-        alone = effect.nuisance_trace(signals, one.location, one.parameter, one.spread)
+        effect = EFFECTS[error.effect]
+        alone = effect.nuisance_trace(signals, error.location, error.parameter, error.spread)
         if alone is not None:
-            found.append(alone)
+            by_parameter.append(alone)
             continue
         values = effect.nulls
-        low, high = effect.bounds(one.location, signals.subject)[:, one.parameter]
-        sign = 1.0 if values[one.parameter] + one.spread <= high else -1.0
-        values[one.parameter] = np.clip(values[one.parameter] + sign * one.spread, low, high)
+        low, high = effect.bounds(error.location, signals.subject)[:, error.parameter]
+        sign = 1.0 if values[error.parameter] + error.spread <= high else -1.0
+        values[error.parameter] = np.clip(values[error.parameter] + sign * error.spread, low, high)
         source = sources[effect.nuisance_torque]
-        moved = (values[one.parameter] - effect.nulls[one.parameter]) / one.spread
-        found.append(
-            {b: v[0] / moved for b, v in effect.trace(source, one.location, values[None]).items()}
+        moved = (values[error.parameter] - effect.nulls[error.parameter]) / error.spread
+        by_parameter.append(
+            {b: v[0] / moved for b, v in effect.trace(source, error.location, values[None]).items()}
             if moved
             else {}
         )
-    return found
+    return by_parameter
 
 
 def _steered(signals: Signals) -> Signals:
@@ -113,25 +113,25 @@ def _steered(signals: Signals) -> Signals:
     return replace(signals, target=np.where(np.isfinite(target), target, signals.target))
 
 
-def _speeds(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
+def _speeds(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
     """Traces of `SPEEDS`: errors between a motor's speed and that of its joints."""
     if "transmission" not in signals.residual:
         return {}
     subject = signals.subject
-    motor = subject.motors.index(one.location)
-    if one.effect == GEARED:
+    motor = subject.motors.index(error.location)
+    if error.effect == GEARED:
         speed = motor_velocity(signals, motor)
-    elif one.effect == TOLD_LATE:
+    elif error.effect == TOLD_LATE:
         speed = -signals.acceleration @ subject.joint_from_motor[:, motor]
     else:
         speed = first_derivative(belt.transmitted(signals, motor), signals.step)
     return {
         residual_name: rows[0]
-        for residual_name, rows in turned(signals, motor, one.spread * speed[None]).items()
+        for residual_name, rows in turned(signals, motor, error.spread * speed[None]).items()
     }
 
 
-def _stepped(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
+def _stepped(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
     """Trace of `STEPPED`: friction as simulators integrate it, less friction at the speed
     itself.
     """
@@ -143,10 +143,10 @@ def _stepped(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
         subject.friction_speed,
     )
     smooth = subject.coulomb * friction.turned(signals.velocity, subject.friction_speed)
-    return {"motion": one.spread * (damping * (signals.velocity + half) - smooth)}
+    return {"motion": error.spread * (damping * (signals.velocity + half) - smooth)}
 
 
-def _filtered(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
+def _filtered(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
     """Trace of `FILTERED`: torque that controllers ask for by the delay of their speeds. Motors
     without current control are damped by their own back-EMF, which has no delay.
     """
@@ -154,7 +154,7 @@ def _filtered(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]
     damping = np.where(
         subject.passive | ~np.isfinite(subject.gains).all(1), 0.0, subject.gains[:, 1]
     )
-    asked = applied(subject.motor_from_joint, one.spread * damping * signals.acceleration)
+    asked = applied(subject.motor_from_joint, error.spread * damping * signals.acceleration)
     control, changes = np.zeros_like(asked), {}
     controlled = [
         is_commanded(signals, m) and not np.isfinite(subject.supply[m])
@@ -165,20 +165,20 @@ def _filtered(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]
             control[:, motor] = asked[:, motor]
         else:
             changes[motor] = asked[None, :, motor]
-    found = {
+    traced = {
         residual_name: rows[0]
         for residual_name, rows in before_measurement(signals, changes).items()
     }
-    return found | ({"control": control} if "control" in signals.residual else {})
+    return traced | ({"control": control} if "control" in signals.residual else {})
 
 
-def _told(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
+def _told(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
     """Traces of errors of logged forces and torques: delays, scale, and where forces act."""
     subject = signals.subject
-    if one.effect == TORQUES_LATE:
+    if error.effect == TORQUES_LATE:
         known = signals.measured is not None
         return (
-            {"motion": -one.spread * first_derivative(signals.rigid.T, signals.step).T}
+            {"motion": -error.spread * first_derivative(signals.rigid.T, signals.step).T}
             if known
             else {}
         )
@@ -186,24 +186,24 @@ def _told(signals: Signals, one: NuisanceParameter) -> dict[str, np.ndarray]:
         return {}
     force = np.nan_to_num(signals.pad_force)
     rotation = None if signals.base is None else signals.base.rotation
-    own = np.array([subject.feet[p.foot] == one.location for p in subject.pads])
-    if one.effect == FORCES_LATE:
-        later = -one.spread * np.gradient(force, signals.step, axis=0)
+    own = np.array([subject.feet[p.foot] == error.location for p in subject.pads])
+    if error.effect == FORCES_LATE:
+        later = -error.spread * np.gradient(force, signals.step, axis=0)
         torque, wrench = pads.contact_torque(subject, signals.position, rotation, later)
-    elif one.effect == FORCES_SCALED:
-        scaled = one.spread * np.where(own[:, None], force, 0.0)
+    elif error.effect == FORCES_SCALED:
+        scaled = error.spread * np.where(own[:, None], force, 0.0)
         torque, wrench = pads.contact_torque(subject, signals.position, rotation, scaled)
     else:
         force = np.where(own[:, None], force, 0.0)
         load = np.maximum(force[..., 2], 0.0)
         share = (
             load / max(float(load[load > 0].mean()), 1e-9)
-            if one.effect == SOLE_GIVES and load.any()
+            if error.effect == SOLE_GIVES and load.any()
             else 1.0
         )
         higher, lower = (
             pads.contact_torque(subject, signals.position, rotation, force, lift)
-            for lift in (one.spread * share, 0.0)
+            for lift in (error.spread * share, 0.0)
         )
         torque, wrench = (a - b for a, b in zip(higher, lower, strict=True))
     return {"motion": torque} | ({"base": wrench} if "base" in signals.residual else {})
@@ -253,14 +253,14 @@ def columns(
     Returns:
         By index of the row `(errors, samples)`.
     """
-    found = {
+    sampled = {
         row: np.zeros((len(errors), filtered_log.count(row)))
         for row in range(len(filtered_log.rows))
     }
     for place, trace in enumerate(traces(filtered_log.signals, errors)):
-        for row, one in enumerate(filtered_log.rows):
-            if one.residual_name in trace:
-                values = trace[one.residual_name][:, one.column]
+        for row, entry in enumerate(filtered_log.rows):
+            if entry.residual_name in trace:
+                values = trace[entry.residual_name][:, entry.column]
                 if np.any(np.nan_to_num(values) != 0):
-                    found[row][place] = filtered_log.sample(row, values[None])[0]
-    return found
+                    sampled[row][place] = filtered_log.sample(row, values[None])[0]
+    return sampled

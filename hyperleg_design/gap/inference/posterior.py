@@ -63,13 +63,13 @@ def posterior_of(
         rules: of the inference.
     """
     own = rules.posterior
-    scores = np.array([one.score for one in result.hypotheses])
+    scores = np.array([hypothesis.score for hypothesis in result.hypotheses])
     weights = np.exp(own.temperature * (scores - scores.max()))
     weights /= weights.sum()
     best = result.best
     probability: dict[Name, float] = {}
-    for one, weight in zip(result.hypotheses, weights.tolist(), strict=True):
-        names = {name for candidate in one.candidates for name in _stated(candidate)}
+    for hypothesis, weight in zip(result.hypotheses, weights.tolist(), strict=True):
+        names = {name for candidate in hypothesis.candidates for name in _stated(candidate)}
         for name in sorted(names):
             probability[name] = probability.get(name, 0.0) + weight
     probability = {name: min(p, own.most_certain) for name, p in probability.items()}
@@ -115,33 +115,33 @@ def _faults(
 ) -> tuple[Candidate, ...]:
     """Candidates that are not, more probably than not, a usual calibration error alone."""
     likely = float(np.log(rules.posterior.likely))
-    found = (
+    likely_faults = (
         candidate
         for place, candidate in expanded(hypothesis.candidates)
         if beyond_usual(hypothesis, place, evidence, rules) > likely
     )
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(likely_faults))
 
 
 def _effects(hypothesis: Hypothesis) -> list[float]:
     """How far the causes of each candidate stand out of their uncertainty, squared."""
-    found, place = [], 0
-    for one in hypothesis.candidates:
+    effects, place = [], 0
+    for candidate in hypothesis.candidates:
         total = 0.0
-        for _ in one.causes:
+        for _ in candidate.causes:
             part = hypothesis.parts[place]
             theta = np.where(hypothesis.causes[place].shape, 0.0, hypothesis.theta[part])
             spread = np.diag(hypothesis.covariance)[part]
             total += float(np.sum(theta**2 / np.maximum(spread, 1e-300)))
             place += 1
-        found.append(total / len(one.causes))
-    return found
+        effects.append(total / len(candidate.causes))
+    return effects
 
 
 def _alike(result: Result, best: Hypothesis, place: int, rules: InferenceRules) -> tuple[Name, ...]:
     """Candidates that could stand in the place of one, about as probably."""
-    rest = {one.name for i, one in enumerate(best.candidates) if i != place}
-    found = []
+    rest = {candidate.name for i, candidate in enumerate(best.candidates) if i != place}
+    names_alike = []
     for other in result.hypotheses:
         names = set(other.names)
         new = names - rest
@@ -150,21 +150,21 @@ def _alike(result: Result, best: Hypothesis, place: int, rules: InferenceRules) 
         (name,) = new
         listed = name[1] != EVERYWHERE and not name[2] and name[0] not in UNLISTED
         if best.score - other.score < rules.posterior.alike and listed:
-            found.append(name)
-    return tuple(found)
+            names_alike.append(name)
+    return tuple(names_alike)
 
 
 def _rivals(result: Result, best: Hypothesis) -> tuple[tuple[Hypothesis, Candidate], ...]:
     seen: dict[Name, tuple[Hypothesis, Candidate]] = {}
     known = {(cause.effect, cause.location, cause.standing) for cause in best.causes}
-    for one in result.hypotheses:
-        for candidate in one.candidates:
+    for hypothesis in result.hypotheses:
+        for candidate in hypothesis.candidates:
             if candidate.standing or candidate.effect in UNLISTED:
                 continue
             if candidate.name in seen or known.issuperset(_stated(candidate)[1:]):
                 continue
             if candidate.name not in best.names:
-                seen[candidate.name] = (one, candidate)
+                seen[candidate.name] = (hypothesis, candidate)
     return tuple(seen.values())
 
 
@@ -177,9 +177,9 @@ def expanded(candidates: Sequence[Candidate]) -> list[tuple[int, Candidate]]:
     Returns:
         Index of each cause among those of all candidates, and its candidate.
     """
-    found, place = [], 0
-    for one in candidates:
-        for _ in one.causes:
-            found.append((place, one))
+    pairs, place = [], 0
+    for candidate in candidates:
+        for _ in candidate.causes:
+            pairs.append((place, candidate))
             place += 1
-    return found
+    return pairs

@@ -105,7 +105,7 @@ class Proposer:
         if isinstance(traced, NotJudged):
             return [], []
         if isinstance(traced, list):
-            return list(traced), [one.columns for one in traced]
+            return list(traced), [cause.columns for cause in traced]
         return [None] * len(traced.columns), list(traced.columns[:, None])
 
     def scaling(self, name: Name) -> Sequence[Sequence[Factor | Shrinking]]:
@@ -122,7 +122,7 @@ class Proposer:
             traced = self.traces[name]
             assert not isinstance(traced, NotJudged)
             self._scaling[name] = (
-                [one.factors for one in traced]
+                [cause.factors for cause in traced]
                 if isinstance(traced, list)
                 else self._of_starts(name, traced)
             )
@@ -161,8 +161,11 @@ class Proposer:
         if name not in self._crossings:
             weight = self.evidence.weight
             weighted = [
-                np.pad(one * weight[: one.shape[1]], ((0, 0), (0, len(weight) - one.shape[1])))
-                for one in self.options(name)[1]
+                np.pad(
+                    columns * weight[: columns.shape[1]],
+                    ((0, 0), (0, len(weight) - columns.shape[1])),
+                )
+                for columns in self.options(name)[1]
             ]
             self._crossings[name] = Crossing.of(self.evidence.channels, np.concatenate(weighted))
         return self._crossings[name]
@@ -181,9 +184,11 @@ class Proposer:
             for name, traced in self.traces.items()
             if name not in taken and not isinstance(traced, NotJudged)
         ]
-        found = spread(lambda name: self._of(name, base), names, self.threads)
-        proposals = [one for some in found for one in some]
-        return sorted(proposals, key=lambda one: (-one.gain, *one.name, one.variant))
+        by_name = spread(lambda name: self._of(name, base), names, self.threads)
+        proposals = [proposal for some in by_name for proposal in some]
+        return sorted(
+            proposals, key=lambda proposal: (-proposal.gain, *proposal.name, proposal.variant)
+        )
 
     def information(self, name: Name, scales: tuple[Scales, ...]) -> np.ndarray:
         """Fisher information of the size of each column of an effect at a place, at some scales.
@@ -252,14 +257,14 @@ class Proposer:
         traced = self.traces[name]
         if isinstance(traced, Starts):
             return self._of_values(name, base, products, traced)
-        found, at = [], rows
+        proposed, at = [], rows
         each = zip(options, columns, self.scaling(name), strict=True)
         for variant, (cause, own_columns, scaled) in enumerate(each):
             place = np.arange(at, at + len(own_columns))
             gain = self._solved(base, products, place, cause, scaled).gain - base.gain
-            found.append(Proposal(*name, variant, gain))
+            proposed.append(Proposal(*name, variant, gain))
             at += len(own_columns)
-        return found
+        return proposed
 
     def _of_values(
         self, name: Name, base: _Beside, products: np.ndarray, starts: Starts

@@ -111,13 +111,13 @@ class Samples:
             accelerated: whether the traces are torques over accelerations, which count as far as
                 drives feel them.
         """
-        found = None
+        sampled = None
         for filtered_log, places in zip(self.filtered_logs, self.where, strict=True):
             for row, values in traced(filtered_log, trace(filtered_log.signals)).items():
-                if found is None:
-                    found = np.zeros((count, len(self.value)))
-                found[:, places[row]] = values
-        return found * self.felt if accelerated and found is not None else found
+                if sampled is None:
+                    sampled = np.zeros((count, len(self.value)))
+                sampled[:, places[row]] = values
+        return sampled * self.felt if accelerated and sampled is not None else sampled
 
 
 def gather(
@@ -195,12 +195,12 @@ def _parts(filtered_logs: Sequence[FilteredLog]) -> list[int]:
     needed of many.
     """
     most = max(MOST_PARTS // len(filtered_logs), 1)
-    found = []
+    parts = []
     for filtered_log in filtered_logs:
         duration = float(filtered_log.signals.time[-1] - filtered_log.signals.time[0])
         wanted = FOLDS if duration < 30 else 2 * FOLDS
-        found.append(wanted if wanted <= most else (FOLDS if most >= FOLDS else most))
-    return found
+        parts.append(wanted if wanted <= most else (FOLDS if most >= FOLDS else most))
+    return parts
 
 
 def felt_share(filtered_log: FilteredLog, row: int) -> np.ndarray:
@@ -218,12 +218,12 @@ def felt_share(filtered_log: FilteredLog, row: int) -> np.ndarray:
         By sample, from 0 to 1, the same all over a band `(samples,)`; 1 of slow bands and of rows
         that are no joints.
     """
-    signals, one = filtered_log.signals, filtered_log.rows[row]
+    signals, place = filtered_log.signals, filtered_log.rows[row]
     band = filtered_log.labels(row)[0]
     share = np.ones(len(band))
-    if one.residual_name != "motion":
+    if place.residual_name != "motion":
         return share
-    columns = signals.rigid[:, one.column], signals.residual["motion"][:, one.column]
+    columns = signals.rigid[:, place.column], signals.residual["motion"][:, place.column]
     needed, left = filtered_log.sample(row, np.stack(columns))
     for fast in np.unique(band[band >= SLOWEST_BANDS]).tolist():
         mine = band == fast

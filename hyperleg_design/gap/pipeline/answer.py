@@ -79,10 +79,10 @@ class Answer:
         rivals = self.rivals()
         if not naming:
             rivals, causes = (*causes, *rivals), ()
-            most = sum(one.probability for one in rivals)
+            most = sum(rival.probability for rival in rivals)
             if most > 1 - self.rules.posterior.likely:
                 share = (1 - self.rules.posterior.likely) / most
-                rivals = tuple(_scaled(one, share) for one in rivals)
+                rivals = tuple(_scaled(rival, share) for rival in rivals)
         equivalent = tuple(
             tuple(name[:2] for name in (posterior.hypothesis.candidates[place].name, *group))
             for place, group in zip(posterior.order, posterior.alike, strict=True)
@@ -123,7 +123,7 @@ class Answer:
         causes = self.causes(self.posterior.standing)
         return {
             "verdict": "explained" if causes else "none",
-            "causes": [one.mapping() for one in causes],
+            "causes": [cause.mapping() for cause in causes],
         }
 
     def differences(self) -> tuple[dict[str, Any], ...]:
@@ -175,7 +175,7 @@ class Answer:
             sizes = intervals(cause, values, deviation, subject, self.torque_error)
             sized.append((stands, Named(cause.effect, cause.location, probability, closed, sizes)))
         clear_ones = [named for stands, named in sized if stands >= CLEAR]
-        return clear_ones or [max(sized, key=lambda one: one[0])[1]]
+        return clear_ones or [max(sized, key=lambda entry: entry[0])[1]]
 
     @property
     def torque_error(self) -> float:
@@ -213,7 +213,9 @@ class Answer:
             )
             if (rival := next(rivals, None)) is not None:
                 place = rival.effect, rival.location
-                best[place] = max(best.get(place, rival), rival, key=lambda one: one.probability)
+                best[place] = max(
+                    best.get(place, rival), rival, key=lambda named: named.probability
+                )
         ranked = sorted(best.items(), key=lambda entry: (-entry[1].probability, *entry[0]))
         return tuple(rival for _, rival in ranked)
 
@@ -251,12 +253,12 @@ class Answer:
     def where(self) -> tuple[Place, ...]:
         """Shares of the excess by place."""
         shares: dict[tuple[str, str], float] = {}
-        for one, value in zip(self.evidence.channels, self.size.excess.tolist(), strict=True):
-            kind = RESIDUALS[one.residual][0]
-            name = one.name
-            if one.residual == "ground":
-                name = one.name.rsplit("_", 1)[0]
-            if one.residual == "base":
+        for channel, value in zip(self.evidence.channels, self.size.excess.tolist(), strict=True):
+            kind = RESIDUALS[channel.residual][0]
+            name = channel.name
+            if channel.residual == "ground":
+                name = channel.name.rsplit("_", 1)[0]
+            if channel.residual == "base":
                 name = "robot"
             shares[name, kind] = shares.get((name, kind), 0.0) + value
         total = sum(shares.values())
@@ -282,10 +284,10 @@ class Answer:
     @cached_property
     def cycling(self) -> dict[str, float]:
         """Joints in a limit cycle that reference logs lack, and its frequency [Hz]."""
-        before = {joint for one in self.evidence.references for joint in _cycles(one)}
+        before = {joint for log in self.evidence.references for joint in _cycles(log)}
         frequencies: dict[str, float] = {}
-        for one in self.evidence.signals:
-            frequencies |= {joint: f for joint, f in _cycles(one).items() if joint not in before}
+        for log in self.evidence.signals:
+            frequencies |= {joint: f for joint, f in _cycles(log).items() if joint not in before}
         return frequencies
 
     @cached_property
@@ -321,13 +323,13 @@ class Answer:
         for place in np.argsort(-left, kind="stable").tolist()[:3]:
             if left[place] <= 0 or self.posterior.remainder <= 0:
                 continue
-            one = self.evidence.channels[place]
+            channel = self.evidence.channels[place]
             text = (
-                f"the {one.residual} residual of {one.name} is left larger or of another shape "
-                f"than a healthy robot's, and no listed effect says why"
+                f"the {channel.residual} residual of {channel.name} is left larger or of another "
+                f"shape than a healthy robot's, and no listed effect says why"
             )
             share = float(left[place] / max(left.sum(), 1e-300))
-            shapes.append(residual_shape("unlisted", one.name, text, share))
+            shapes.append(residual_shape("unlisted", channel.name, text, share))
         return tuple(shapes)
 
     def remarks(self, checks: Sequence[Check]) -> tuple[str, ...]:
@@ -380,5 +382,7 @@ def _cycles(signals: Signals) -> dict[str, float]:
     return dict(zip(joints.tolist(), cycle.frequency[cycle.joints].tolist(), strict=True))
 
 
-def _scaled(one: Named, share: float) -> Named:
-    return Named(one.effect, one.location, one.probability * share, one.closed, one.parameters)
+def _scaled(rival: Named, share: float) -> Named:
+    return Named(
+        rival.effect, rival.location, rival.probability * share, rival.closed, rival.parameters
+    )

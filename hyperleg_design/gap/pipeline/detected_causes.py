@@ -52,7 +52,7 @@ def of_imu(diagnosis: Diagnosis, offset: Offset) -> Diagnosis:
             _surer(c, offset) if (c.effect, c.location) == PLACE else c for c in diagnosis.causes
         )
         return diagnosis if causes == diagnosis.causes else replace(diagnosis, causes=causes)
-    shape = residual_shape(OFFSET, PLACE[1], offset.says, offset.closed)
+    shape = residual_shape(OFFSET, PLACE[1], offset.sentence, offset.closed)
     rivals = tuple(r for r in diagnosis.rivals if (r.effect, r.location) != PLACE)
     diagnosis = replace(diagnosis, residual_shape=(shape, *diagnosis.residual_shape), rivals=rivals)
     cause = Named(*PLACE, 1 - OTHER_SENSOR, offset.closed, offset.parameters)
@@ -93,30 +93,32 @@ def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
     """
     diagnosis = _without_creep(diagnosis, feet)
     feet = [
-        one for one in feet if one.name not in {(c.effect, c.location) for c in diagnosis.causes}
+        foot for foot in feet if foot.name not in {(c.effect, c.location) for c in diagnosis.causes}
     ]
     if not feet:
         return diagnosis
-    noted = (residual_shape(one.shape, one.foot, one.says, one.closed) for one in feet)
-    effects = {one.effect for one in feet}
+    noted = (residual_shape(foot.shape, foot.foot, foot.sentence, foot.closed) for foot in feet)
+    effects = {foot.effect for foot in feet}
     rivals = tuple(r for r in diagnosis.rivals if r.effect not in effects)
     diagnosis = replace(
         diagnosis, residual_shape=(*noted, *diagnosis.residual_shape), rivals=rivals
     )
-    causes = tuple(Named(*one.name, 1 - OTHER_GROUND, one.closed, one.parameters) for one in feet)
+    causes = tuple(
+        Named(*foot.name, 1 - OTHER_GROUND, foot.closed, foot.parameters) for foot in feet
+    )
     if diagnosis.causes:
         return replace(diagnosis, causes=(*diagnosis.causes, *causes))
-    names = {one.foot for one in feet}
+    names = {foot.foot for foot in feet}
     under = (w for w in diagnosis.where if w.regime == "all" and w.kind == "foot")
     theirs = sum(w.share for w in under if w.location in names)
     if diagnosis.verdict == "unknown" and theirs < OF_FEET:
         return _with_part(diagnosis, causes[0])
-    weight = sum(one.weight for one in feet)
-    before = sum(one.weight * one.size**2 for one in feet) / weight
-    after = sum(one.weight * one.left**2 for one in feet) / weight
+    weight = sum(foot.weight for foot in feet)
+    before = sum(foot.weight * foot.size**2 for foot in feet) / weight
+    after = sum(foot.weight * foot.left**2 for foot in feet) / weight
     closed = 1 - (after / before) ** 0.5
     gap = Shrinkage(before**0.5, after**0.5, 0.0, closed, (closed, closed), feet[0].unit)
-    shares = (one.weight * one.size**2 / (before * weight) for one in feet)
+    shares = (foot.weight * foot.size**2 / (before * weight) for foot in feet)
     where = (Place(o.foot, "foot", "all", share) for o, share in zip(feet, shares, strict=True))
     return _instead(diagnosis, causes, gap, tuple(where))
 
@@ -148,13 +150,13 @@ def _without_creep(diagnosis: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis
     """Without slippery ground under feet that sink and are not known to slide: what is soft
     creeps.
     """
-    slid = {one["location"] for one in diagnosis.residual_shape if one["shape"] == SLIPS}
-    soft = {(SLIPPERY, one.foot) for one in feet if one.shape == SINKS and one.foot not in slid}
-    kept = tuple(c for c in diagnosis.causes if (c.effect, c.location) not in soft)
-    if len(kept) == len(diagnosis.causes):
+    slid = {shape["location"] for shape in diagnosis.residual_shape if shape["shape"] == SLIPS}
+    soft = {(SLIPPERY, foot.foot) for foot in feet if foot.shape == SINKS and foot.foot not in slid}
+    others = tuple(c for c in diagnosis.causes if (c.effect, c.location) not in soft)
+    if len(others) == len(diagnosis.causes):
         return diagnosis
     sets = tuple(group for group in diagnosis.equivalent if not soft.intersection(group))
     verdict = "explained" if diagnosis.verdict == "ambiguous" and not sets else diagnosis.verdict
     experiment = diagnosis.separating_experiment if sets else None
-    diagnosis = replace(diagnosis, verdict=verdict, causes=kept, equivalent=sets)
+    diagnosis = replace(diagnosis, verdict=verdict, causes=others, equivalent=sets)
     return replace(diagnosis, separating_experiment=experiment)

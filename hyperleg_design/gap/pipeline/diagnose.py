@@ -156,7 +156,7 @@ def diagnose_signals(
         raise InputError("diagnose", "logs", None, "are missing: give at least one log")
     rules = rules or InferenceRules()
     say("trying every effect of the catalogue on what the model leaves over")
-    told = judge_signals(
+    diagnosis = judge_signals(
         signals,
         references,
         [
@@ -169,11 +169,11 @@ def diagnose_signals(
         threads=threads,
         checks=checks,
     )
-    return _beside(told, signals, references, effects, rules)
+    return _beside(diagnosis, signals, references, effects, rules)
 
 
 def _beside(
-    told: Diagnosis,
+    diagnosis: Diagnosis,
     signals: Sequence[Signals],
     references: Sequence[Signals],
     effects: Sequence[str] | None,
@@ -185,9 +185,11 @@ def _beside(
     least = rules.posterior.main_part
     for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
         if effects is None or effect in effects:
-            found = tell(signals, references)
-            told = of_feet(told, tuple(one for one in found if one.closed >= least))
+            grounds = tell(signals, references)
+            diagnosis = of_feet(
+                diagnosis, tuple(ground for ground in grounds if ground.closed >= least)
+            )
     if effects is not None and PLACE[0] not in effects:
-        return told
+        return diagnosis
     offset = imu_offset(signals, references, rules.cause.usual)
-    return told if offset is None or offset.closed < least else of_imu(told, offset)
+    return diagnosis if offset is None or offset.closed < least else of_imu(diagnosis, offset)

@@ -80,8 +80,8 @@ class Channel:
         none `(t,)`.
         """
         others = np.setdiff1d(self.band, self.bands_tested)
-        place = {int(self.frequency[one]): int(one) for one in others}
-        return np.array([place.get(int(self.frequency[one]), -1) for one in self.bands_tested])
+        place = {int(self.frequency[band]): int(band) for band in others}
+        return np.array([place.get(int(self.frequency[band]), -1) for band in self.bands_tested])
 
     def usual_noise(self, noise: np.ndarray, rules: InferenceRules) -> np.ndarray:
         """Variance that noise of a healthy robot has in each of `bands_tested`: that of the
@@ -159,10 +159,10 @@ class Channel:
         Args:
             columns: over all samples `(m, S)`.
         """
-        found = np.zeros(len(columns), bool)
+        shown = np.zeros(len(columns), bool)
         for cut in self._cuts:
-            found |= columns[:, cut].any(1)
-        return found
+            shown |= columns[:, cut].any(1)
+        return shown
 
     def crossed(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Sums of products with further columns.
@@ -196,17 +196,17 @@ class Channel:
         Returns:
             `(m, n)`, all others one after the other.
         """
-        found = np.zeros((len(some), sum(len(one) for one in others)))
+        products = np.zeros((len(some), sum(len(columns) for columns in others)))
         for cut, over in zip(self._cuts, noise[self.band].tolist(), strict=True):
             mine = some[:, cut] / over
             if mine.shape[1] and mine.any():
                 last = cut.stop - 1 if isinstance(cut, slice) else cut[-1]
                 at = 0
-                for one in others:
-                    if last < one.shape[1]:
-                        found[:, at : at + len(one)] += mine @ one[:, cut].T
-                    at += len(one)
-        return found
+                for columns in others:
+                    if last < columns.shape[1]:
+                        products[:, at : at + len(columns)] += mine @ columns[:, cut].T
+                    at += len(columns)
+        return products
 
     def left(self, cross: np.ndarray, own: np.ndarray, theta: np.ndarray) -> Residual:
         """Products of what is left of the residual without a trace.
@@ -236,11 +236,11 @@ class Channel:
                 white[cell][-1] -= trace[place]
         cross, own = self.crossed(trace[None])
         k = self.columns
-        found = self.products.copy()
-        found[:, :k, k] -= cross[:, :k, 0]
-        found[:, k, :k] -= cross[:, :k, 0]
-        found[:, k, k] += own[:, 0, 0] - 2 * cross[:, k, 0]
-        return replace(self, products=found, whitened=tuple(white))
+        products = self.products.copy()
+        products[:, :k, k] -= cross[:, :k, 0]
+        products[:, k, :k] -= cross[:, :k, 0]
+        products[:, k, k] += own[:, 0, 0] - 2 * cross[:, k, 0]
+        return replace(self, products=products, whitened=tuple(white))
 
     def summed(self, noise: np.ndarray, products: np.ndarray) -> np.ndarray:
         """Sum products over the noise by session.
@@ -372,8 +372,8 @@ class Channel:
             rules: of the inference.
         """
         taught = np.delete(noise, self.bands_tested)
-        found = -0.5 * rules.noise.weight * float(np.sum(np.log(taught) + 1 / taught))
-        return found + float(np.logaddexp(*self.noisy(noise, rules)))
+        density = -0.5 * rules.noise.weight * float(np.sum(np.log(taught) + 1 / taught))
+        return density + float(np.logaddexp(*self.noisy(noise, rules)))
 
     def log_prior_of_scales(self, scales: Scales, rules: InferenceRules) -> float:
         """Compute the log prior density of the scales of the discrepancy, up to a constant [nat].

@@ -35,12 +35,16 @@ class Crossing:
             columns: weighted as the residual `(m, S)`.
         """
         present = columns != 0  # numpy looks through truth values many times faster than numbers
-        shown = [np.flatnonzero(one.shows(present)) for one in channels]
-        made = [(np.zeros((0, 0, 0)), np.zeros((0, 0, 0)))] * len(shown)
-        for place, (one, some) in enumerate(zip(channels, shown, strict=True)):
+        shown = [np.flatnonzero(channel.shows(present)) for channel in channels]
+        crossed = [(np.zeros((0, 0, 0)), np.zeros((0, 0, 0)))] * len(shown)
+        for place, (channel, some) in enumerate(zip(channels, shown, strict=True)):
             if len(some):
-                made[place] = one.crossed(columns[some] if len(some) < len(columns) else columns)
-        return cls(len(columns), tuple(shown), tuple(c for c, _ in made), tuple(o for _, o in made))
+                crossed[place] = channel.crossed(
+                    columns[some] if len(some) < len(columns) else columns
+                )
+        return cls(
+            len(columns), tuple(shown), tuple(c for c, _ in crossed), tuple(o for _, o in crossed)
+        )
 
     def left(self, channels: Sequence[Channel], theta: np.ndarray) -> list[Residual]:
         """What is left of each channel's residual without a trace over these columns.
@@ -51,8 +55,8 @@ class Crossing:
         """
         each = zip(channels, self.shown, self.cross, self.own, strict=True)
         return [
-            one.left(cross, own, theta[some]) if len(some) else one.whole_residual
-            for one, some, cross, own in each
+            channel.left(cross, own, theta[some]) if len(some) else channel.whole_residual
+            for channel, some, cross, own in each
         ]
 
     def reduced(self, channels: Sequence[Channel], scales: Sequence[Scales]) -> np.ndarray:
@@ -66,12 +70,12 @@ class Crossing:
         Returns:
             `(m + 1, m + 1)`, the residual first.
         """
-        found = np.zeros((self.count + 1, self.count + 1))
-        for one, its, some, cross, own in zip(
+        products = np.zeros((self.count + 1, self.count + 1))
+        for channel, its, some, cross, own in zip(
             channels, scales, self.shown, self.cross, self.own, strict=True
         ):
             place = np.r_[0, 1 + some]
-            found[np.ix_(place, place)] += (
-                one.reduced(its, cross, own) if len(some) else one.reduced(its)
+            products[np.ix_(place, place)] += (
+                channel.reduced(its, cross, own) if len(some) else channel.reduced(its)
             )
-        return found
+        return products

@@ -25,7 +25,7 @@ def rotated(
         By cell, the turned columns and the residual, and how many of the columns are steady. One of
         those that are not is left at least.
     """
-    total = sum((one[:-1] @ one[:-1].T for one in white), np.zeros(()))
+    total = sum((cell[:-1] @ cell[:-1].T for cell in white), np.zeros(()))
     turns = []
     for part in (slice(steady), slice(steady, None)):
         values, axes = np.linalg.eigh(total[part, part])
@@ -33,4 +33,4 @@ def rotated(
         shown[-1:] |= part.stop is None
         turns.append(axes[:, shown])
     turn = block_diag(*turns).T
-    return [np.concatenate([turn @ one[:-1], one[-1:]]) for one in white], turns[0].shape[1]
+    return [np.concatenate([turn @ cell[:-1], cell[-1:]]) for cell in white], turns[0].shape[1]

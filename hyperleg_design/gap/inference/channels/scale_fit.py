@@ -69,7 +69,9 @@ def fitted(
         healthy = replace(scales, new=0.0)
         begin = max(scales.new, float(np.log(rules.discrepancy.unlisted)) / 2)
         unlisted = _searched(channel, replace(scales, new=begin), "new", rules, likelihood, steps)
-        scales = max((healthy, unlisted), key=lambda one: _score(channel, one, rules, likelihood))
+        scales = max(
+            (healthy, unlisted), key=lambda tried: _score(channel, tried, rules, likelihood)
+        )
     return scales
 
 
@@ -97,8 +99,8 @@ def _score(
     channel: Channel, scales: Scales, rules: InferenceRules, likelihood: Likelihood
 ) -> float:
     """Log posterior of the scales of the discrepancy at given noise [nat]."""
-    found = likelihood.at(channel.change_scales(scales), scales.standing)
-    return found + channel.log_prior_of_scales(scales, rules)
+    log_likelihood = likelihood.at(channel.change_scales(scales), scales.standing)
+    return log_likelihood + channel.log_prior_of_scales(scales, rules)
 
 
 def _searched(

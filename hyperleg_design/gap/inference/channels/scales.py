@@ -38,18 +38,18 @@ def log_prior_of_scales(
         changes: whether more than one session tells a change from what stands.
     """
     if not referenced:
-        found = _mixed(scales.standing, prior)
+        density = _mixed(scales.standing, prior)
     else:
-        found = _normal(scales.standing, prior.referenced, prior.referenced_spread)
+        density = _normal(scales.standing, prior.referenced, prior.referenced_spread)
         odds = prior.unlisted_probability
-        found += (
+        density += (
             float(np.log(1 - odds))
             if scales.new <= ABSENT
             else float(np.log(odds)) + _normal(scales.new, prior.unlisted, prior.unlisted_spread)
         )
     if changes:
-        found += _normal(scales.change, prior.change, prior.change_spread)
-    return found
+        density += _normal(scales.change, prior.change, prior.change_spread)
+    return density
 
 
 def _normal(logarithm: float, median: float, spread: float) -> float:

@@ -69,7 +69,7 @@ class Offset:
         return 1 - self.left / self.size
 
     @property
-    def says(self) -> str:
+    def sentence(self) -> str:
         """What was found, as a sentence of a report."""
         if self.leans:
             return (
@@ -96,14 +96,14 @@ def imu_offset(
         references: logs of the healthy robot; an error that they have, too, is none of these.
         beyond: usual deviations from which an error is a finding, `CauseRules.usual`.
     """
-    logs = [_compared(one) for one in signals]
-    means = np.array([one.mean for one in logs])
+    logs = [_compared(log) for log in signals]
+    means = np.array([log.mean for log in logs])
     mean, error = _together(logs)
     if references:
-        healthy, unsure = _together([_compared(one) for one in references])
-        told = np.isfinite(healthy)
-        mean = np.where(told, mean - healthy, mean)
-        error = np.where(told, np.hypot(error, unsure), error)
+        healthy, unsure = _together([_compared(log) for log in references])
+        known = np.isfinite(healthy)
+        mean = np.where(known, mean - healthy, mean)
+        error = np.where(known, np.hypot(error, unsure), error)
     over = np.abs(mean) / USUAL
     clear = np.isfinite(mean) & (over > beyond) & (np.abs(mean) > CERTAIN * error)
     if not clear.any():
@@ -183,8 +183,8 @@ def _stays_in_sensor(logs: Sequence[_Compared]) -> bool:
     """Whether an accelerometer's error is constant in its own axes, and neither a vertical that
     leans nor a sensor that is turned against the base explains it nearly as well, by least squares.
     """
-    value = np.concatenate([one.pieces for one in logs])
-    columns = np.concatenate([one.leaning for one in logs])
+    value = np.concatenate([log.pieces for log in logs])
+    columns = np.concatenate([log.leaning for log in logs])
     known = np.isfinite(value).all(-1)
     value, columns = value[known], columns[known].reshape(-1, 5)
     if not len(value):
@@ -197,7 +197,7 @@ def _stays_in_sensor(logs: Sequence[_Compared]) -> bool:
 
 def _together(logs: Sequence[_Compared]) -> tuple[np.ndarray, np.ndarray]:
     """Mean of logs and its standard error `(6,)`, from their own and from how they differ."""
-    means, errors = np.array([one.mean for one in logs]), np.array([one.error for one in logs])
+    means, errors = np.array([log.mean for log in logs]), np.array([log.error for log in logs])
     count = np.isfinite(means).sum(0)
     own = np.sqrt(np.nansum(errors**2, 0)) / np.maximum(count, 1)
     middle = np.where(count > 0, np.nansum(means, 0) / np.maximum(count, 1), np.nan)

@@ -76,22 +76,25 @@ def sinks(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> tup
         references: logs of the healthy robot; a ground that gave as much under it, too, is none of
             these.
     """
-    found = [
+    feet_that_sink = [
         _sink(foot, place, signals, references)
         for place, foot in enumerate(signals[0].subject.feet)
     ]
     return tuple(
-        sorted((one for one in found if one is not None), key=lambda one: (-one.size, one.foot))
+        sorted(
+            (foot for foot in feet_that_sink if foot is not None),
+            key=lambda foot: (-foot.size, foot.foot),
+        )
     )
 
 
 def _sink(
     foot: str, place: int, signals: Sequence[Signals], references: Sequence[Signals]
 ) -> Underfoot | None:
-    logs = [_apart(bearings(one, place)) for one in signals]
+    logs = [_apart(bearings(log, place)) for log in signals]
     pads = [pad for own in logs for pad in own]
     given = _compliance(pads)
-    healthy = _compliance([pad for one in references for pad in _apart(bearings(one, place))])
+    healthy = _compliance([pad for log in references for pad in _apart(bearings(log, place))])
     if given is None:
         return None
     scale, error = given
@@ -117,13 +120,21 @@ def _sink(
     ]
     size, left = spread * (slope - usual), spread * float(np.sqrt(np.mean(np.square(off))))
     reach = NORMAL * float(np.hypot(error, PADS * scale))
-    says = (
+    sentence = (
         f"sinks by {1e3 * slope * spread:.2g} mm with the usual changes of its pads' load, "
         f"{scale:.2g} times as much as it should"
     )
     value = Value(scale, max(scale - reach, 0.0), scale + reach, "")
     return Underfoot(
-        EFFECT, foot, {"scale": value}, SINKS, says, float(len(pads)), size, min(left, size), "m"
+        EFFECT,
+        foot,
+        {"scale": value},
+        SINKS,
+        sentence,
+        float(len(pads)),
+        size,
+        min(left, size),
+        "m",
     )
 
 
@@ -138,7 +149,7 @@ def bearings(signals: Signals, place: int) -> list[Bearing]:
     if not feet:
         return []
     foot = feet[place]
-    found = []
+    bearing_pads = []
     for pad in range(foot.height.shape[1]):
         load = foot.pad_force[:, pad, 2]
         used = (
@@ -148,16 +159,22 @@ def bearings(signals: Signals, place: int) -> list[Bearing]:
             & (np.nan_to_num(load) > LOADED)
         )
         if used.sum() >= LEAST_TICKS and float(load[used].std()) >= VARIED:
-            found.append(
+            bearing_pads.append(
                 Bearing(load[used], foot.height[used, pad], -_depth(foot, pad, load[used]))
             )
-    return found
+    return bearing_pads
 
 
 def _depth(foot: Footing, pad: int, load: np.ndarray) -> np.ndarray:
     """How deep a pad stands in the nominal ground [m]."""
-    law, one = foot.law, slice(pad, pad + 1)
-    own = Law(law.spring[one], law.damper[one], law.weight[one], law.impedance[one], law.weakest)
+    law, own_pad = foot.law, slice(pad, pad + 1)
+    own = Law(
+        law.spring[own_pad],
+        law.damper[own_pad],
+        law.weight[own_pad],
+        law.impedance[own_pad],
+        law.weakest,
+    )
     depth = np.linspace(0, DEEPEST, 2001)
     return np.interp(load, own.force(depth[:, None], np.zeros((len(depth), 1))), depth)
 

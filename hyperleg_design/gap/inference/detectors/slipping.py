@@ -72,61 +72,69 @@ def slips(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> tup
         references: logs of the healthy robot; a ground that they slid on, too, is none of these.
     """
     feet = signals[0].subject.feet
-    found = [_slip(foot, place, signals, references) for place, foot in enumerate(feet)]
+    feet_that_slide = [_slip(foot, place, signals, references) for place, foot in enumerate(feet)]
     return tuple(
-        sorted((one for one in found if one is not None), key=lambda one: (-one.weight, one.foot))
+        sorted(
+            (foot for foot in feet_that_slide if foot is not None),
+            key=lambda foot: (-foot.weight, foot.foot),
+        )
     )
 
 
 def _slip(
     foot: str, place: int, signals: Sequence[Signals], references: Sequence[Signals]
 ) -> Underfoot | None:
-    logs = [one for s in signals if (one := _sliding(s, place)) is not None]
+    logs = [slides for s in signals if (slides := _sliding(s, place)) is not None]
     ratio = _coefficient(logs)
     if ratio is None:
         return None
     ground = footings(signals[0])[place]
     edges, ratios = (
-        np.concatenate([getattr(one, name) for one in logs]) for name in ("along_edges", "ratio")
+        np.concatenate([getattr(slides, name) for slides in logs])
+        for name in ("along_edges", "ratio")
     )
     as_simulated = ground.law.weakest < 1 and _spread(edges) <= _spread(ratios)
     if as_simulated and abs(float(np.median(edges)) / ground.friction - 1) <= UNUSUAL * USUAL:
         return None
-    healthy = _coefficient([one for s in references if (one := _sliding(s, place)) is not None])
+    healthy = _coefficient(
+        [slides for s in references if (slides := _sliding(s, place)) is not None]
+    )
     usual, unsure = (ground.friction, USUAL) if healthy is None else (healthy, DAY * USUAL)
     scale = ratio / usual
     if abs(scale - 1) < UNUSUAL * USUAL:
         return None
-    parts = [(one.load, one.ratio) for one in logs if one.time >= LEAST_TIME]
+    parts = [(slides.load, slides.ratio) for slides in logs if slides.time >= LEAST_TIME]
     if len(parts) < 2:
-        loads = np.concatenate([one.load for one in logs])
+        loads = np.concatenate([slides.load for slides in logs])
         parts = list(
             zip(*(np.split(values, [len(ratios) // 2]) for values in (loads, ratios)), strict=True)
         )
-    load, told = (np.concatenate(values) for values in zip(*parts, strict=True))
+    load, own_ratios = (np.concatenate(values) for values in zip(*parts, strict=True))
     others = [
         float(np.median(np.concatenate([r for i, (_, r) in enumerate(parts) if i != left_out])))
         for left_out in range(len(parts))
     ]
-    size = float(np.sqrt(np.mean((load * (told - usual)) ** 2)))
+    size = float(np.sqrt(np.mean((load * (own_ratios - usual)) ** 2)))
     left = float(
-        np.sqrt(np.mean((load * (told - np.repeat(others, [len(r) for _, r in parts]))) ** 2))
+        np.sqrt(np.mean((load * (own_ratios - np.repeat(others, [len(r) for _, r in parts]))) ** 2))
     )
-    reach = NORMAL * scale * float(np.hypot(unsure, _spread(told) / 2))
+    reach = NORMAL * scale * float(np.hypot(unsure, _spread(own_ratios) / 2))
     value = Value(scale, max(scale - reach, 0.0), scale + reach, "")
-    time = sum(one.time for one in logs)
-    says = f"slides for {time:.2g} s with a tangential force of {ratio:.3g} times its load"
-    return Underfoot(EFFECT, foot, {"scale": value}, SLIPS, says, time, size, min(left, size), "N")
+    time = sum(slides.time for slides in logs)
+    sentence = f"slides for {time:.2g} s with a tangential force of {ratio:.3g} times its load"
+    return Underfoot(
+        EFFECT, foot, {"scale": value}, SLIPS, sentence, time, size, min(left, size), "N"
+    )
 
 
 def _coefficient(logs: Sequence[_Sliding]) -> float | None:
     """The ratio of all that slides; None where that is little, or not one ratio, or less than what
     sticks.
     """
-    if sum(one.time for one in logs) < LEAST_TIME:
+    if sum(slides.time for slides in logs) < LEAST_TIME:
         return None
     ratio, speed, loaded = (
-        np.concatenate([getattr(one, name) for one in logs])
+        np.concatenate([getattr(slides, name) for slides in logs])
         for name in ("ratio", "speed", "loaded")
     )
     middle, (slower, faster) = float(np.median(ratio)), np.percentile(speed, [10, 90])
@@ -188,8 +196,8 @@ def contacts(signals: Signals, place: int) -> Contacts | None:
         across = np.linalg.norm(slide + against[..., None] * way, axis=-1)
         slides = loaded & (against > FAST) & (against > STRAIGHT * across)
         edges = np.abs(force[..., :2]).sum(-1) / load
-        found = Contacts(load, size / load, edges, against, slides, loaded)
-    return found if loaded.any() else None
+        in_contact = Contacts(load, size / load, edges, against, slides, loaded)
+    return in_contact if loaded.any() else None
 
 
 def _sliding(signals: Signals, place: int) -> _Sliding | None:

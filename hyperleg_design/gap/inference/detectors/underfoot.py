@@ -18,7 +18,7 @@ class Underfoot:
     parameters: Mapping[str, Value]
     shape: str
     """Name of the finding: that the foot slides, or that it sinks."""
-    says: str
+    sentence: str
     """For people."""
     weight: float
     """Of this foot among others: seconds that it slides, or number of its contacts."""

@@ -174,7 +174,7 @@ def test_a_vertical_that_leans_is_not_blamed_on_the_accelerometer(swaying, subje
     for rotation in (sensor.swapaxes(1, 2) @ tilt @ sensor, tilt):
         told = found(subject, rotated(swaying, "accelerometer", rotation))
         assert told.leans == pytest.approx(np.hypot(0.03, 0.05), rel=0.1)
-        assert "leans by 0.05" in told.says
+        assert "leans by 0.05" in told.sentence
     slight = Rotation.from_rotvec([0.006, 0.0, 0.0]).as_matrix()
     assert found(subject, rotated(swaying, "accelerometer", slight)) is None
 

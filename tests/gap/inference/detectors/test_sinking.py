@@ -106,7 +106,7 @@ def test_feet_that_sink_tell_how_much(subject, nominal, softer):
         assert scale.value == pytest.approx(softer, rel=0.05)
         assert scale.low < softer < scale.high
         assert one.closed > 0.8
-        assert "times as much as it should" in one.says
+        assert "times as much as it should" in one.sentence
 
 
 @pytest.mark.parametrize("softer", [0.0, 0.3, 1.0, 1.4])

@@ -107,7 +107,7 @@ def test_feet_that_slide_tell_their_ground(subject, coefficient, by_foot):
         assert scale.low < coefficient < scale.high
         assert scale.value == pytest.approx(coefficient, rel=0.02)
         assert one.closed > 0.9
-        assert "times its load" in one.says
+        assert "times its load" in one.sentence
 
 
 def test_a_ground_as_it_should_be_is_no_finding(subject):
