@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.gap.effects.placing import joint_strength
+from hyperleg_design.gap.effects.placing import joint_strength, motor_strength
 from hyperleg_design.gap.inference.rules import NoiseRules
 from hyperleg_design.gap.inference.white_noise import white_density
 from hyperleg_design.gap.model import rigid
@@ -164,8 +164,7 @@ def _strength(filtered_log: FilteredLog, row: int) -> float:
     if place.residual_name == "transmission":
         fastest = float(subject.no_load_speed[place.column])
         return fastest if np.isfinite(fastest) else FAST
-    limit = float(subject.torque_limit[place.column])
-    return limit if np.isfinite(limit) else 1.0
+    return motor_strength(subject, place.column)
 
 
 def _capped(filtered_log: FilteredLog, row: int, residual: np.ndarray, white: float) -> np.ndarray:

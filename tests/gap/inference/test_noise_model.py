@@ -122,3 +122,16 @@ def test_noise_of_the_needed_torque_is_told_from_that_of_the_drives(one):
         # interpolation onto even ticks is allowed for
         assert np.all((0.9 * added < told[0][mine]) & (told[0][mine] < 1.7 * added))
         assert np.all(told[1][mine] < 0.1 * added + quiet[mine])
+
+
+def test_limits_that_limit_nothing_make_no_noise_of_drives(robot_files):
+    (signals,) = diagnosed.conditioned(robot_files["coupled"], diagnosed.run("limited", 0))
+    endless = np.full(len(signals.subject.motors), 1e4)
+    placeholders = dataclasses.replace(signals.subject, torque_limit=endless, stall_torque=endless)
+    floors = []
+    for subject in (signals.subject, placeholders):
+        filtered = filtered_log(dataclasses.replace(signals, subject=subject))
+        drives = [row for row, place in enumerate(filtered.rows) if place.residual_name == "drive"]
+        assert drives
+        floors.append(np.array([expected(filtered, NoiseRules())[row] for row in drives]))
+    assert (floors[1] < 2 * floors[0]).all()
