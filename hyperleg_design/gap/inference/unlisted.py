@@ -33,10 +33,34 @@ def unlisted(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
 def makes_noise(channel: Channel, scales: Scales, rules: InferenceRules) -> bool:
     """Whether a channel's noise is rather an unlisted effect's than a healthy robot's.
 
+    Less noise than a healthy robot's is none: a command that follows its law exactly has no
+    residual at all.
+
     Args:
         channel: of the evidence.
         scales: that were fitted to it.
         rules: of the inference.
     """
-    healthy, other = channel.noisy(scales.noise, rules)
+    noise, tested = scales.noise.copy(), channel.bands_tested
+    noise[tested] = np.maximum(noise[tested], channel.usual_noise(noise, rules))
+    healthy, other = channel.noisy(noise, rules)
     return other > healthy
+
+
+def excess_noise(channel: Channel, scales: Scales, rules: InferenceRules) -> float:
+    """Compute how many times as much a channel scatters as a healthy robot's, where something
+    unlisted makes its noise.
+
+    Args:
+        channel: of the evidence.
+        scales: that were fitted to it.
+        rules: of the inference.
+
+    Returns:
+        The ratio of standard deviations in the band where it is largest; 1 where the noise is a
+        healthy robot's.
+    """
+    if not makes_noise(channel, scales, rules):
+        return 1.0
+    over = scales.noise[channel.bands_tested] / channel.usual_noise(scales.noise, rules)
+    return float(np.sqrt(over.max()))

@@ -5,7 +5,6 @@ hypotheses.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,11 +13,9 @@ from scipy.special import expit
 from hyperleg_design import provenance
 from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.checks.coverage import beyond_references
-from hyperleg_design.gap.effects import UNLISTED, WEIGHED
+from hyperleg_design.gap.effects import UNLISTED
 from hyperleg_design.gap.experiments import experiment
 from hyperleg_design.gap.inference.assembly import Evidence
-from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.detectors.ringing import ringing
 from hyperleg_design.gap.inference.gap_size import GapSize
 from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
 from hyperleg_design.gap.inference.intervals import intervals
@@ -26,6 +23,7 @@ from hyperleg_design.gap.inference.posterior import Posterior, expanded
 from hyperleg_design.gap.inference.reference_differences import Difference
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.search import Result
+from hyperleg_design.gap.pipeline.unexplained import Unexplained
 from hyperleg_design.gap.results.diagnosis import (
     LEAST_SHARE,
     MOST_RIVALS,
@@ -34,10 +32,9 @@ from hyperleg_design.gap.results.diagnosis import (
     Named,
     Place,
     Shrinkage,
-    residual_shape,
 )
 from hyperleg_design.gap.results.finding import NOTE, WARNING
-from hyperleg_design.gap.signals.signals import RESIDUALS, Signals
+from hyperleg_design.gap.signals.signals import RESIDUALS
 
 WORST = -9.99
 """Least share of a gap closed that is stated [-]; a cause that fits other data badly may close far
@@ -62,6 +59,7 @@ class Answer:
     ) -> None:
         self.evidence, self.result, self.posterior, self.size = evidence, result, posterior, size
         self.rules, self.seed, self.apart = rules, seed, apart
+        self.unexplained = Unexplained(evidence, posterior, size, rules)
 
     def diagnosis(self, checks: Sequence[Check], sensitivity: Any) -> Diagnosis:
         """Collect the whole answer from the parts that were computed.
@@ -94,7 +92,8 @@ class Answer:
         )
         return Diagnosis(
             verdict="unknown"
-            if posterior.verdict == "none" and (self.cycling or self.ringing)
+            if posterior.verdict == "none"
+            and (self.unexplained.cycling or self.unexplained.ringing)
             else posterior.verdict,
             gap=self.gap(naming),
             where=self.where(),
@@ -109,7 +108,7 @@ class Answer:
                 for n in self.result.not_judged
                 if n.effect not in UNLISTED
             ),
-            residual_shape=self.shape(),
+            residual_shape=self.unexplained.shapes(),
             checks=self.remarks(checks),
             sensitivity=sensitivity,
             provenance=self.provenance(),
@@ -271,67 +270,6 @@ class Answer:
             if value / total >= LEAST_SHARE
         )
 
-    def odd(self) -> list[tuple[Cause, str]]:
-        """Causes of the most probable hypothesis that are not listed, with their descriptions."""
-        best = self.posterior.hypothesis
-        unlisted = [best.candidates[place] for place in self.posterior.odd]
-        return [
-            (best.causes[place], WEIGHED[candidate.effect].describe(best.values(place)))
-            for place, candidate in expanded(best.candidates)
-            if candidate in unlisted
-        ]
-
-    @cached_property
-    def cycling(self) -> dict[str, float]:
-        """Joints in a limit cycle that reference logs lack, and its frequency [Hz]."""
-        before = {joint for log in self.evidence.references for joint in _cycles(log)}
-        frequencies: dict[str, float] = {}
-        for log in self.evidence.signals:
-            frequencies |= {joint: f for joint, f in _cycles(log).items() if joint not in before}
-        return frequencies
-
-    @cached_property
-    def ringing(self) -> dict[str, float]:
-        """Joints that ring and are in no limit cycle, see `ringing`."""
-        logs = self.evidence.samples.filtered_logs
-        count = len(self.evidence.signals)
-        over = ringing(logs[:count], logs[count:])
-        return {joint: times for joint, times in over.items() if joint not in self.cycling}
-
-    def shape(self) -> tuple[dict[str, Any], ...]:
-        """Channels in which something unlisted acts."""
-        left = np.maximum(self.size.after - self.size.noise, 0.0)
-        shapes = []
-        for joint, frequency in self.cycling.items():
-            text = (
-                f"swings to and fro at {frequency:.0f} Hz (or a frequency that the log's rate "
-                f"folds there), which nothing commands: its control loop is on the edge of "
-                f"stability"
-            )
-            shapes.append(residual_shape("limit cycle", joint, text, 0.0))
-        for joint, times in self.ringing.items():
-            text = (
-                f"is {times:.0f} times as large above the frequencies of its motion as in the "
-                f"references, and faults are lost in it: play that knocks, a loose part, or a "
-                f"control loop on the edge of stability"
-            )
-            shapes.append(residual_shape("ringing", joint, text, 0.0))
-        remainder = self.posterior.remainder
-        for cause, text in self.odd():
-            if not cause.standing:
-                shapes.append(residual_shape(cause.effect, cause.location, text, remainder))
-        for place in np.argsort(-left, kind="stable").tolist()[:3]:
-            if left[place] <= 0 or self.posterior.remainder <= 0:
-                continue
-            channel = self.evidence.channels[place]
-            text = (
-                f"the {channel.residual} residual of {channel.name} is left larger or of another "
-                f"shape than a healthy robot's, and no listed effect says why"
-            )
-            share = float(left[place] / max(left.sum(), 1e-300))
-            shapes.append(residual_shape("unlisted", channel.name, text, share))
-        return tuple(shapes)
-
     def remarks(self, checks: Sequence[Check]) -> tuple[str, ...]:
         """Collect what a reader of the answer should know of the logs.
 
@@ -350,7 +288,7 @@ class Answer:
         texts += beyond_references(self.evidence.signals, self.evidence.references)
         texts.extend(
             f"references and tests alike: {cause.location} {description}"
-            for cause, description in self.odd()
+            for cause, description in self.unexplained.unlisted_causes
             if cause.standing
         )
         if not self.evidence.references:
@@ -371,15 +309,6 @@ class Answer:
             "commit": provenance.git_commit(),
             "versions": provenance.versions(("hyperleg-design", "numpy", "scipy")),
         }
-
-
-def _cycles(signals: Signals) -> dict[str, float]:
-    """Joints of a log that are in a limit cycle, and its frequency [Hz]."""
-    cycle = signals.limit_cycle
-    if cycle is None:
-        return {}
-    joints = np.asarray(signals.subject.joints)[cycle.joints]
-    return dict(zip(joints.tolist(), cycle.frequency[cycle.joints].tolist(), strict=True))
 
 
 def _scaled(rival: Named, share: float) -> Named:

@@ -23,16 +23,12 @@ from hyperleg_design.gap.results.diagnosis import (
 
 APART = (OFFSET, SLIPS, SINKS)
 """Names of these findings in `Diagnosis.residual_shape`."""
-OTHER_SENSOR = 0.05
-"""Probability that what differs from an IMU is wrong instead of it (assumed)."""
-OTHER_GROUND = 0.05
-"""Probability that forces or heights of feet are wrong instead of their ground (assumed)."""
 OF_FEET = 0.5
 """Share of an unknown gap that lies in the residuals of sliding or sinking feet, from which their
 ground explains it [-]."""
 
 
-def of_imu(diagnosis: Diagnosis, offset: Offset) -> Diagnosis:
+def of_imu(diagnosis: Diagnosis, offset: Offset, certain: float) -> Diagnosis:
     """Add an IMU's constant error to a diagnosis: beside what is named already, or instead of
     nothing; of an unknown gap it is a part.
 
@@ -43,6 +39,7 @@ def of_imu(diagnosis: Diagnosis, offset: Offset) -> Diagnosis:
     Args:
         diagnosis: the diagnosis so far.
         offset: error of the IMU.
+        certain: probability of what is certain, `PosteriorRules.most_certain`.
 
     Returns:
         The diagnosis with it.
@@ -55,7 +52,7 @@ def of_imu(diagnosis: Diagnosis, offset: Offset) -> Diagnosis:
     shape = residual_shape(OFFSET, PLACE[1], offset.sentence, offset.closed)
     rivals = tuple(r for r in diagnosis.rivals if (r.effect, r.location) != PLACE)
     diagnosis = replace(diagnosis, residual_shape=(shape, *diagnosis.residual_shape), rivals=rivals)
-    cause = Named(*PLACE, 1 - OTHER_SENSOR, offset.closed, offset.parameters)
+    cause = Named(*PLACE, certain, offset.closed, offset.parameters)
     if diagnosis.causes:
         return diagnosis if offset.leans else replace(diagnosis, causes=(*diagnosis.causes, cause))
     if diagnosis.verdict == "unknown" or offset.leans:
@@ -78,7 +75,7 @@ def _surer(cause: Named, offset: Offset) -> Named:
     return replace(cause, parameters={**cause.parameters, **narrower})
 
 
-def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
+def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot], certain: float) -> Diagnosis:
     """Add what feet show of their ground to a diagnosis: beside what is named already, or instead
     of nothing.
 
@@ -87,6 +84,7 @@ def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
     Args:
         diagnosis: the diagnosis so far.
         feet: effects of the ground under some feet.
+        certain: probability of what is certain, `PosteriorRules.most_certain`.
 
     Returns:
         The diagnosis with them.
@@ -103,9 +101,7 @@ def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot]) -> Diagnosis:
     diagnosis = replace(
         diagnosis, residual_shape=(*noted, *diagnosis.residual_shape), rivals=rivals
     )
-    causes = tuple(
-        Named(*foot.name, 1 - OTHER_GROUND, foot.closed, foot.parameters) for foot in feet
-    )
+    causes = tuple(Named(*foot.name, certain, foot.closed, foot.parameters) for foot in feet)
     if diagnosis.causes:
         return replace(diagnosis, causes=(*diagnosis.causes, *causes))
     names = {foot.foot for foot in feet}

@@ -182,14 +182,15 @@ def _beside(
     """With what feet and the IMU tell that is in no residual, where other logs, or the other half
     of one, foretell the main part of it.
     """
-    least = rules.posterior.main_part
+    least, certain = rules.posterior.main_part, rules.posterior.most_certain
     for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
         if effects is None or effect in effects:
             grounds = tell(signals, references)
-            diagnosis = of_feet(
-                diagnosis, tuple(ground for ground in grounds if ground.closed >= least)
-            )
+            foretold = tuple(ground for ground in grounds if ground.closed >= least)
+            diagnosis = of_feet(diagnosis, foretold, certain)
     if effects is not None and PLACE[0] not in effects:
         return diagnosis
     offset = imu_offset(signals, references, rules.cause.usual)
-    return diagnosis if offset is None or offset.closed < least else of_imu(diagnosis, offset)
+    if offset is None or offset.closed < least:
+        return diagnosis
+    return of_imu(diagnosis, offset, certain)

@@ -40,7 +40,11 @@ def quiet(noise, rules):
 
 def answer(*hypotheses, closed=1.0, usual=None):
     ranked = tuple(sorted(hypotheses, key=lambda one: -one.score))
-    channels = (SimpleNamespace(referenced=False, noisy=quiet),)
+    nothing_tested = {
+        "bands_tested": np.zeros(0, int),
+        "usual_noise": lambda noise, rules: np.zeros(0),
+    }
+    channels = (SimpleNamespace(referenced=False, noisy=quiet, **nothing_tested),)
     evidence = SimpleNamespace(channels=channels, references=(), usual=usual or {})
     return posterior_of(Result(ranked, ()), evidence, SimpleNamespace(closed=closed), RULES)
 

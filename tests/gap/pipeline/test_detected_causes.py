@@ -8,11 +8,13 @@ from diagnosed import run
 
 from hyperleg_design.gap.inference.detectors.imu_offset import PLACE, Offset
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
+from hyperleg_design.gap.inference.rules import PosteriorRules
 from hyperleg_design.gap.pipeline.detected_causes import of_feet, of_imu
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.results.diagnosis import Named, Place, Value
 from hyperleg_design.report.gap.text import diagnosis_text
 
+CERTAIN = PosteriorRules.most_certain
 OTHER = Named("coulomb_friction", "hip", 0.9, 0.8, {})
 
 
@@ -44,7 +46,7 @@ def names(causes):
 
 
 def test_a_sensor_is_the_cause_where_nothing_else_is(none, offset):
-    told = of_imu(none, offset)
+    told = of_imu(none, offset, CERTAIN)
     assert told.verdict == "explained"
     assert names(told.causes) == [PLACE]
     assert (told.gap.before, told.gap.after, told.gap.unit) == (0.05, 0.001, "rad/s")
@@ -56,9 +58,9 @@ def test_a_sensor_is_the_cause_where_nothing_else_is(none, offset):
 
 
 def test_a_sensor_is_one_cause_more_beside_others_and_is_not_named_twice(none, offset):
-    told = of_imu(replace(none, verdict="explained", causes=(OTHER,)), offset)
+    told = of_imu(replace(none, verdict="explained", causes=(OTHER,)), offset, CERTAIN)
     assert names(told.causes) == [("coulomb_friction", "hip"), PLACE]
-    assert of_imu(told, offset) is told
+    assert of_imu(told, offset, CERTAIN) is told
 
 
 def test_a_sensor_that_is_named_already_has_the_surer_of_both_sizes(none, offset):
@@ -66,7 +68,11 @@ def test_a_sensor_that_is_named_already_has_the_surer_of_both_sizes(none, offset
     sure = {**rough, "gyro_x": Value(0.01, 0.009, 0.011, "")}
     blind = replace(offset, parameters={**offset.parameters, "gyro_z": Value(0.0, 0.0, 0.0, "")})
     told = (
-        of_imu(replace(none, verdict="explained", causes=(Named(*PLACE, 0.9, 0.8, sure),)), blind)
+        of_imu(
+            replace(none, verdict="explained", causes=(Named(*PLACE, 0.9, 0.8, sure),)),
+            blind,
+            CERTAIN,
+        )
         .causes[0]
         .parameters
     )
@@ -76,7 +82,7 @@ def test_a_sensor_that_is_named_already_has_the_surer_of_both_sizes(none, offset
 
 
 def test_a_sensor_does_not_explain_a_gap_that_is_unknown(none, offset):
-    told = of_imu(replace(none, verdict="unknown"), offset)
+    told = of_imu(replace(none, verdict="unknown"), offset, CERTAIN)
     assert (told.verdict, told.causes) == ("unknown", ())
     assert names(told.rivals)[0] == PLACE
     assert told.residual_shape[0]["shape"] == "offset"
@@ -86,13 +92,13 @@ def test_a_sensor_does_not_explain_a_gap_that_is_unknown(none, offset):
 
 def test_a_vertical_that_leans_is_an_unknown_gap_and_no_cause(none, offset):
     leaning = replace(offset, kind="accelerometer", leans=0.03)
-    told = of_imu(none, leaning)
+    told = of_imu(none, leaning, CERTAIN)
     assert (told.verdict, told.causes) == ("unknown", ())
     assert names(told.rivals)[0] == PLACE
     assert "leans by 0.03 rad" in diagnosis_text(told.mapping())
-    assert names(of_imu(replace(none, verdict="explained", causes=(OTHER,)), leaning).causes) == [
-        ("coulomb_friction", "hip")
-    ]
+    assert names(
+        of_imu(replace(none, verdict="explained", causes=(OTHER,)), leaning, CERTAIN).causes
+    ) == [("coulomb_friction", "hip")]
 
 
 def feet(effect, shape, says, unit):
@@ -112,7 +118,7 @@ BOTH = [("ground_friction", "left_foot"), ("ground_friction", "right_foot")]
 
 
 def test_slippery_ground_is_the_cause_where_nothing_else_is(none):
-    told = of_feet(none, SLIDING)
+    told = of_feet(none, SLIDING, CERTAIN)
     assert (told.verdict, names(told.causes)) == ("explained", BOTH)
     assert (told.gap.before, told.gap.unit) == (pytest.approx(30.0), "N")
     assert told.gap.closed == pytest.approx(0.9)
@@ -125,10 +131,10 @@ def test_slippery_ground_is_the_cause_where_nothing_else_is(none):
 
 
 def test_slippery_ground_is_one_cause_more_beside_others_and_is_not_named_twice(none):
-    told = of_feet(replace(none, verdict="explained", causes=(OTHER,)), SLIDING)
+    told = of_feet(replace(none, verdict="explained", causes=(OTHER,)), SLIDING, CERTAIN)
     assert names(told.causes) == [("coulomb_friction", "hip"), *BOTH]
-    assert of_feet(told, SLIDING) is told
-    assert of_feet(none, ()) is none
+    assert of_feet(told, SLIDING, CERTAIN) is told
+    assert of_feet(none, (), CERTAIN) is none
 
 
 def test_an_unknown_gap_under_feet_that_slide_is_theirs_and_another_is_not(none):
@@ -138,8 +144,10 @@ def test_an_unknown_gap_under_feet_that_slide_is_theirs_and_another_is_not(none)
         Place("right_foot", "foot", "all", 0.3),
         Place("hip", "joint", "all", 0.3),
     )
-    assert of_feet(replace(unknown, where=under), SLIDING).verdict == "explained"
-    elsewhere = of_feet(replace(unknown, where=(Place("hip", "joint", "all", 1.0),)), SLIDING)
+    assert of_feet(replace(unknown, where=under), SLIDING, CERTAIN).verdict == "explained"
+    elsewhere = of_feet(
+        replace(unknown, where=(Place("hip", "joint", "all", 1.0),)), SLIDING, CERTAIN
+    )
     assert (elsewhere.verdict, elsewhere.causes) == ("unknown", ())
     assert names(elsewhere.rivals)[0] == BOTH[0]
 
@@ -148,16 +156,17 @@ def test_soft_ground_that_creeps_is_not_slippery_but_one_that_feet_slide_on_may_
     slippery = Named("ground_friction", "left_foot", 0.9, 0.5, {})
     soft = [("ground_compliance", foot) for _, foot in BOTH]
     assert (
-        names(of_feet(replace(none, verdict="explained", causes=(slippery,)), SOFT).causes) == soft
+        names(of_feet(replace(none, verdict="explained", causes=(slippery,)), SOFT, CERTAIN).causes)
+        == soft
     )
-    assert names(of_feet(of_feet(none, SLIDING), SOFT).causes) == [*BOTH, *soft]
+    assert names(of_feet(of_feet(none, SLIDING, CERTAIN), SOFT, CERTAIN).causes) == [*BOTH, *soft]
     alike = replace(
         none,
         verdict="ambiguous",
         causes=(OTHER, slippery),
         equivalent=((BOTH[0], ("link_mass", "hip")),),
     )
-    told = of_feet(alike, SOFT)
+    told = of_feet(alike, SOFT, CERTAIN)
     assert (told.verdict, told.equivalent, names(told.causes)) == (
         "explained",
         (),

@@ -57,8 +57,8 @@ class Cogging(MotorTorque):
     identifier: ClassVar[str] = "cogging"
     summary: ClassVar[str] = "a motor's torque varies with its angle, some periods a turn"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("cosine", "Nm", 0.0, -20.0, 20.0, 0.02, COSINE_SOURCE, of_strength=True),
-        Parameter("sine", "Nm", 0.0, -20.0, 20.0, 0.02, "as the cosine", of_strength=True),
+        Parameter("cosine", "Nm", 0.0, -1e3, 1e3, 0.02, COSINE_SOURCE, of_strength=True),
+        Parameter("sine", "Nm", 0.0, -1e3, 1e3, 0.02, "as the cosine", of_strength=True),
         Parameter("order", "1/turn", 6.0, 0.5, 200.0, 10.0, ORDER_SOURCE, shape=True),
     )
     hooks: ClassVar[type[MotorHooks]] = _Cogging

@@ -49,7 +49,7 @@ class RotorInertia(MotorTorque):
     described: ClassVar[bool] = True
     summary: ClassVar[str] = "a rotor (and its gear) has more or less inertia than the model"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("inertia", "kg m^2", 0.0, -5.0, 5.0, 0.05, SOURCE),
+        Parameter("inertia", "kg m^2", 0.0, -1e3, 1e3, 0.05, SOURCE),
     )
     linear: ClassVar[bool] = True
     needs: ClassVar[Need] = Need(

@@ -32,7 +32,7 @@ class CoulombFriction(ModelledFriction):
     summary: ClassVar[str] = "a joint resists motion with a torque of constant size"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
-            "torque", "Nm", 0.0, -50.0, 100.0, 0.04, SOURCE, spread=COULOMB_LEAST, of_strength=True
+            "torque", "Nm", 0.0, -1e4, 1e4, 0.04, SOURCE, spread=COULOMB_LEAST, of_strength=True
         ),
     )
     linear: ClassVar[bool] = True

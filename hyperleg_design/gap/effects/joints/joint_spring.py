@@ -32,8 +32,8 @@ class JointSpring(JointTorque):
     nuisance_rank: ClassVar[int] = 5
     summary: ClassVar[str] = "a cable or a spring pulls a joint towards some angle"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("stiffness", "Nm/rad", 0.0, -100.0, 500.0, *USUAL, of_strength=True),
-        Parameter("preload", "Nm", 0.0, -100.0, 100.0, *USUAL, of_strength=True),
+        Parameter("stiffness", "Nm/rad", 0.0, -1e5, 1e5, *USUAL, of_strength=True),
+        Parameter("preload", "Nm", 0.0, -1e4, 1e4, *USUAL, of_strength=True),
     )
     linear: ClassVar[bool] = True
     needs: ClassVar[Need] = SWINGING

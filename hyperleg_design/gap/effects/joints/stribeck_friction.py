@@ -41,7 +41,7 @@ class StribeckFriction(ModelledFriction):
             "Nm",
             0.0,
             0.0,
-            50.0,
+            1e4,
             0.04,
             TORQUE_SOURCE,
             0.3 * COULOMB_LEAST,

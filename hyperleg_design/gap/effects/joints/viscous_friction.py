@@ -31,7 +31,7 @@ class ViscousFriction(ModelledFriction):
     summary: ClassVar[str] = "a joint resists motion in proportion to its velocity"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
-            "damping", "Nms/rad", 0.0, -50.0, 100.0, 0.02, SOURCE, spread=0.0007, of_strength=True
+            "damping", "Nms/rad", 0.0, -1e4, 1e4, 0.02, SOURCE, spread=0.0007, of_strength=True
         ),
     )
     linear: ClassVar[bool] = True

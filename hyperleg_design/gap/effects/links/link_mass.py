@@ -31,7 +31,7 @@ class LinkMass(OwnInertiaEffect):
     identifier: ClassVar[str] = "link_mass"
     summary: ClassVar[str] = "a link's own mass is off, its centre of mass is not"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("mass", "kg", 0.0, -20.0, 100.0, 0.2, SOURCE),
+        Parameter("mass", "kg", 0.0, -1e4, 1e4, 0.2, SOURCE),
     )
     linear: ClassVar[bool] = True
     told_apart: ClassVar[Mapping[str, Set[str]]] = {"several postures": {"payload"}}

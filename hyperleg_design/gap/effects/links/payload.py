@@ -49,7 +49,7 @@ class Payload(MomentsEffect):
     identifier: ClassVar[str] = "payload"
     summary: ClassVar[str] = "a mass that hangs on a link and that the model does not have"
     parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("mass", "kg", 0.0, -20.0, 100.0, 0.5, MASS_SOURCE),
+        Parameter("mass", "kg", 0.0, -1e4, 1e4, 0.5, MASS_SOURCE),
         Parameter("com_x", "m", 0.0, -1.0, 1.0, 0.05, COM_X_SOURCE, shape=True),
         Parameter("com_y", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),
         Parameter("com_z", "m", 0.0, -1.0, 1.0, 0.05, "as com_x (assumed)", shape=True),

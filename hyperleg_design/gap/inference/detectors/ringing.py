@@ -17,12 +17,12 @@ from hyperleg_design.gap.signals.filtering import FilteredLog
 
 LOUD = 20.0
 """Density of a residual above its motion over that of the references, from which a joint rings [-]
-(developed: at most 7 times where loops are stable, whatever else is wrong, and 24 to 1600 times
-where play knocks)."""
+(developed: at most 7 times where loops are stable and no belt is soft, whatever else is wrong, and
+24 to 1600 times where play knocks)."""
 
 
 def ringing(tests: Sequence[FilteredLog], references: Sequence[FilteredLog]) -> dict[str, float]:
-    """Find the joints that ring in every log under test and in no reference.
+    """Find the joints that ring in a log under test and in no reference.
 
     Args:
         tests: logs under test.
@@ -30,16 +30,17 @@ def ringing(tests: Sequence[FilteredLog], references: Sequence[FilteredLog]) -> 
 
     Returns:
         By joint, how many times as large its residual of motion is above the frequencies of the
-        motion, as a root mean square, as in the loudest reference, the loudest joint first.
+        motion, as a root mean square, in the loudest log as in the loudest reference, the loudest
+        joint first.
     """
     quiet = [_densities(log) for log in references]
     loud = [_densities(log) for log in tests]
     over: dict[str, float] = {}
     for joint in loud[0]:
-        least = min(density.get(joint, 0.0) for density in loud)
-        most = max((density.get(joint, 0.0) for density in quiet), default=0.0)
-        if most > 0 and least > LOUD * most:
-            over[joint] = float(np.sqrt(least / most))
+        own = max(density.get(joint, 0.0) for density in loud)
+        before = max((density.get(joint, 0.0) for density in quiet), default=0.0)
+        if before > 0 and own > LOUD * before:
+            over[joint] = float(np.sqrt(own / before))
     return dict(sorted(over.items(), key=lambda entry: -entry[1]))
 
 

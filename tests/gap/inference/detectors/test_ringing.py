@@ -29,14 +29,14 @@ def test_healthy_joints_do_not_ring(filtered):
     assert ringing(runs[:2], ()) == {}
 
 
-def test_joints_that_shake_in_all_logs_under_test_ring(filtered):
+def test_joints_that_shake_in_a_log_under_test_ring(filtered):
     quiet = filtered(*(shaken(seed, 0.01) for seed in (2, 3)))
     loud = filtered(*(shaken(seed, 0.2) for seed in (0, 1)))
     over = ringing(loud, quiet)
     assert over
     assert list(over.values()) == sorted(over.values(), reverse=True)
     assert all(np.sqrt(LOUD) < times < 25 for times in over.values())
-    assert ringing([*loud, *quiet[:1]], quiet[1:]) == {}
+    assert over.keys() <= ringing([*loud[:1], *quiet[:1]], quiet[1:]).keys()
     assert ringing(quiet, loud) == {}
 
 

@@ -1,0 +1,138 @@
+"""What no cause of an answer explains, in words: joints in a limit cycle or that ring, functions
+that the catalogue lacks, and channels that are left larger or noisier than a healthy robot's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from hyperleg_design.gap.effects import WEIGHED
+from hyperleg_design.gap.inference.assembly import Evidence
+from hyperleg_design.gap.inference.cause import Cause
+from hyperleg_design.gap.inference.detectors.ringing import ringing
+from hyperleg_design.gap.inference.gap_size import GapSize
+from hyperleg_design.gap.inference.posterior import Posterior, expanded
+from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.inference.unlisted import excess_noise
+from hyperleg_design.gap.results.diagnosis import residual_shape
+from hyperleg_design.gap.signals.signals import Signals
+
+MOST_CHANNELS = 3
+"""Channels that are named where no listed effect says why they are larger or noisier."""
+
+
+@dataclass(frozen=True, eq=False)
+class Unexplained:
+    """What is left over beside the most probable hypothesis."""
+
+    evidence: Evidence
+    posterior: Posterior
+    size: GapSize
+    rules: InferenceRules
+
+    @property
+    def unlisted_causes(self) -> list[tuple[Cause, str]]:
+        """Causes of the most probable hypothesis that the catalogue lacks, and what they do."""
+        best = self.posterior.hypothesis
+        unlisted = [best.candidates[place] for place in self.posterior.odd]
+        return [
+            (best.causes[place], WEIGHED[candidate.effect].describe(best.values(place)))
+            for place, candidate in expanded(best.candidates)
+            if candidate in unlisted
+        ]
+
+    @cached_property
+    def cycling(self) -> dict[str, float]:
+        """Joints in a limit cycle that reference logs lack, and its frequency [Hz]."""
+        before = {joint for log in self.evidence.references for joint in _cycles(log)}
+        frequencies: dict[str, float] = {}
+        for log in self.evidence.signals:
+            frequencies |= {joint: f for joint, f in _cycles(log).items() if joint not in before}
+        return frequencies
+
+    @cached_property
+    def ringing(self) -> dict[str, float]:
+        """Joints that ring and are in no limit cycle, and how many times as loud as before."""
+        logs = self.evidence.samples.filtered_logs
+        count = len(self.evidence.signals)
+        over = ringing(logs[:count], logs[count:])
+        return {joint: times for joint, times in over.items() if joint not in self.cycling}
+
+    @property
+    def hides_faults(self) -> bool:
+        """Whether a joint swings or rings so that faults are lost in it."""
+        return bool(self.cycling or self.ringing)
+
+    def shapes(self) -> tuple[dict[str, Any], ...]:
+        """Describe it for `Diagnosis.residual_shape`, the most telling first."""
+        shapes = []
+        for joint, frequency in self.cycling.items():
+            text = (
+                f"swings to and fro at {frequency:.0f} Hz (or a frequency that the log's rate "
+                f"folds there), which nothing commands: its control loop is on the edge of "
+                f"stability"
+            )
+            shapes.append(residual_shape("limit cycle", joint, text, 0.0))
+        for joint, times in self.ringing.items():
+            text = (
+                f"is {times:.0f} times as large above the frequencies of its motion as in the "
+                f"references, and faults are lost in it: play that knocks, a loose part, or a "
+                f"control loop on the edge of stability"
+            )
+            shapes.append(residual_shape("ringing", joint, text, 0.0))
+        remainder = self.posterior.remainder
+        for cause, text in self.unlisted_causes:
+            if not cause.standing:
+                shapes.append(residual_shape(cause.effect, cause.location, text, remainder))
+        return (*shapes, *self._larger(), *self._noisier())
+
+    def _larger(self) -> list[dict[str, Any]]:
+        """Channels of which the causes leave more than a healthy robot does."""
+        left = np.maximum(self.size.after - self.size.noise, 0.0)
+        shapes = []
+        for place in np.argsort(-left, kind="stable").tolist()[:MOST_CHANNELS]:
+            if left[place] <= 0 or self.posterior.remainder <= 0:
+                continue
+            channel = self.evidence.channels[place]
+            text = (
+                f"the {channel.residual} residual of {channel.name} is left larger or of another "
+                f"shape than a healthy robot's, and no listed effect says why"
+            )
+            share = float(left[place] / max(left.sum(), 1e-300))
+            shapes.append(residual_shape("unlisted", channel.name, text, share))
+        return shapes
+
+    def _noisier(self) -> list[dict[str, Any]]:
+        """Channels with noise that no healthy robot has, the noisiest first."""
+        times = [
+            excess_noise(channel, scales, self.rules)
+            for channel, scales in zip(
+                self.evidence.channels, self.posterior.hypothesis.scales, strict=True
+            )
+        ]
+        usual = "the references" if self.evidence.references else "healthy robots"
+        shapes = []
+        for place in np.argsort([-t for t in times], kind="stable").tolist()[:MOST_CHANNELS]:
+            if times[place] <= 1 or self.posterior.remainder <= 0:
+                continue
+            channel = self.evidence.channels[place]
+            text = (
+                f"the {channel.residual} residual of {channel.name} scatters up to "
+                f"{times[place]:.2g} times as much as in {usual}, in a way that follows no listed "
+                f"effect: look for play, a loose part or a disturbed signal"
+            )
+            shapes.append(residual_shape("noise", channel.name, text, 0.0))
+        return shapes
+
+
+def _cycles(signals: Signals) -> dict[str, float]:
+    """Joints of a log that are in a limit cycle, and its frequency [Hz]."""
+    cycle = signals.limit_cycle
+    if cycle is None:
+        return {}
+    joints = np.asarray(signals.subject.joints)[cycle.joints]
+    return dict(zip(joints.tolist(), cycle.frequency[cycle.joints].tolist(), strict=True))

@@ -1,0 +1,90 @@
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from hyperleg_design.gap.inference.channels.channel import Channel
+from hyperleg_design.gap.inference.channels.scales import Scales
+from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.pipeline.unexplained import Unexplained
+
+BANDS = 2
+
+
+def channel(name):
+    own = SimpleNamespace(
+        name=name,
+        residual="motion",
+        bands_tested=np.arange(BANDS),
+        bands_alike=np.arange(BANDS) + BANDS,
+    )
+    for method in ("usual_noise", "noisy"):
+        setattr(own, method, getattr(Channel, method).__get__(own))
+    return own
+
+
+def unexplained(noises, after, remainder=1.0, cycles=((), ())):
+    """Of channels with some noise over that of the references, and mean squares that are left."""
+    channels = tuple(channel(name) for name in noises)
+    scales = [
+        Scales(np.r_[np.full(BANDS, noise), np.ones(BANDS)], 0.0, 0.0, 0.0)
+        for noise in noises.values()
+    ]
+
+    def log(joints):
+        found = SimpleNamespace(
+            joints=np.array([joint in joints for joint in noises]),
+            frequency=np.full(len(noises), 9.0),
+        )
+        subject = SimpleNamespace(joints=tuple(noises))
+        return SimpleNamespace(limit_cycle=found if joints else None, subject=subject)
+
+    tests, references = cycles
+    return Unexplained(
+        SimpleNamespace(
+            channels=channels,
+            signals=(log(tests),),
+            references=(log(references),),
+            samples=SimpleNamespace(filtered_logs=(SimpleNamespace(rows=(), mask=()),) * 2),
+        ),
+        SimpleNamespace(
+            hypothesis=SimpleNamespace(scales=tuple(scales), candidates=(), causes=()),
+            odd=(),
+            remainder=remainder,
+        ),
+        SimpleNamespace(after=np.array(after), noise=np.ones(len(noises))),
+        InferenceRules(),
+    )
+
+
+def test_channels_that_scatter_are_named_the_noisiest_first():
+    shapes = unexplained({"hip": 1.0, "knee": 400.0, "ankle": 1600.0}, [1.0, 1.0, 1.0]).shapes()
+    assert [(shape["shape"], shape["location"]) for shape in shapes] == [
+        ("noise", "ankle"),
+        ("noise", "knee"),
+    ]
+    assert "40 times as much as in the references" in shapes[0]["says"]
+    assert "20 times" in shapes[1]["says"]
+
+
+def test_less_noise_than_before_is_nothing_to_explain():
+    assert unexplained({"hip": 1e-4, "knee": 1.0}, [1.0, 1.0]).shapes() == ()
+
+
+def test_channels_that_are_left_larger_are_named_with_their_shares():
+    shapes = unexplained({"hip": 1.0, "knee": 1.0, "ankle": 1.0}, [2.0, 1.0, 4.0]).shapes()
+    assert [shape["location"] for shape in shapes] == ["ankle", "hip"]
+    assert [shape["closed_beyond"] for shape in shapes] == pytest.approx([0.75, 0.25])
+    assert unexplained({"hip": 1.0}, [2.0], remainder=0.0).shapes() == ()
+
+
+def test_a_limit_cycle_counts_where_the_references_lack_it():
+    quiet = unexplained({"hip": 1.0, "knee": 1.0}, [1.0, 1.0])
+    assert not quiet.hides_faults
+    swinging = unexplained({"hip": 1.0, "knee": 1.0}, [1.0, 1.0], cycles=(("knee",), ()))
+    assert swinging.hides_faults
+    (shape,) = swinging.shapes()
+    assert (shape["shape"], shape["location"]) == ("limit cycle", "knee")
+    assert "9 Hz" in shape["says"]
+    before = unexplained({"hip": 1.0, "knee": 1.0}, [1.0, 1.0], cycles=(("knee",), ("knee",)))
+    assert not before.hides_faults
