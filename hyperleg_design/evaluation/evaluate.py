@@ -247,9 +247,11 @@ def _evaluated(
         Alterations | None,
     ],
 ) -> Evaluation:
-    name, protocol, kept, overrides, design, alterations = job
+    name, protocol, trials_with_signals, overrides, design, alterations = job
     run = None if protocol is None else protocol_from_mapping(protocol, "protocol")
     policy = load_policy(name)
     if overrides:
         design = (design or policy.design).with_values(dict(overrides), "overrides")
-    return evaluate(policy, run, design=design, threads=1, alterations=alterations).light(kept)
+    return evaluate(policy, run, design=design, threads=1, alterations=alterations).light(
+        trials_with_signals
+    )

@@ -56,7 +56,7 @@ def mean_over_seeds(seed: Seed) -> float:
 
 
 def measured_groups(groups: Groups) -> tuple[list[Seed], int]:
-    """Leave out what was not measured.
+    """Leave out values, checkpoints and seeds that were not measured.
 
     Args:
         groups: values of each seed.
@@ -86,7 +86,11 @@ def measured_groups(groups: Groups) -> tuple[list[Seed], int]:
     missing = sum(len(a) for seed in seeds for a in seed) - sum(
         len(a) for seed in measured for a in seed
     )
-    return [found for found in ([a for a in seed if len(a)] for seed in measured) if found], missing
+    return [
+        checkpoints
+        for checkpoints in ([a for a in seed if len(a)] for seed in measured)
+        if checkpoints
+    ], missing
 
 
 def paired_groups(first: Groups, second: Groups) -> tuple[list[Any], list[Any]]:

@@ -110,7 +110,7 @@ class FourBar:
         """
         from scipy.optimize import least_squares
 
-        def made(unknown: np.ndarray) -> FourBar:
+        def linkage_of(unknown: np.ndarray) -> FourBar:
             return cls(
                 crank,
                 float(np.exp(np.clip(unknown[0], -9, 9))) * crank,
@@ -121,7 +121,7 @@ class FourBar:
             )
 
         def misfit(unknown: np.ndarray) -> np.ndarray:
-            bar = made(unknown)
+            bar = linkage_of(unknown)
             with np.errstate(invalid="ignore"):
                 ratios = np.array(
                     [bar(np.array(0.0))[1] - at_rest, bar(np.array(turn))[1] - at_turn]
@@ -137,7 +137,7 @@ class FourBar:
             best = least_squares(
                 misfit, np.array([np.log(at_rest), 0.0]), xtol=1e-15, ftol=1e-15, gtol=1e-15
             )
-            bar = made(best.x)
+            bar = linkage_of(best.x)
             with np.errstate(invalid="ignore"):
                 sampled = bar(np.linspace(*turns, 181))[1]
             if np.max(np.abs(best.fun)) < 1e-9 and np.all((low < sampled) & (sampled < high)):

@@ -65,7 +65,7 @@ class Live:
     `imu` are also called between steps, so they must leave the state alone.
     """
 
-    kept: ClassVar[tuple[str, ...]] = ()
+    hidden_state: ClassVar[tuple[str, ...]] = ()
     """Names of the attributes that are hidden state: arrays with the simulations in front."""
 
     def __init__(self, alteration: Any, machine: Machine, count: int, step: float) -> None:
@@ -83,7 +83,7 @@ class Live:
             position: of the joints [rad], `(len(ids), J)`.
             velocity: of the joints [rad/s], `(len(ids), J)`.
         """
-        for name in self.kept:
+        for name in self.hidden_state:
             getattr(self, name)[ids] = 0
 
     def begin(self, tick: Tick) -> None:
@@ -277,7 +277,7 @@ Alterations = Sequence[Alteration] | Callable[[Any], Sequence[Alteration]]
 """Alterations, or what makes them for a design."""
 
 
-def made(alterations: Alterations | None, design: RobotDesign) -> tuple[Alteration, ...]:
+def alterations_of(alterations: Alterations | None, design: RobotDesign) -> tuple[Alteration, ...]:
     """Collect the alterations of a design.
 
     Args:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.simulation.alteration import Alterations, made
+from hyperleg_design.simulation.alteration import Alterations, alterations_of
 from hyperleg_design.simulation.commands import changed_commands
 from hyperleg_design.simulation.layout import stacked
 from hyperleg_design.simulation.stepping.action import checked_action
@@ -92,7 +92,7 @@ class Environment:
             [design.take(i) for i in range(number)] if design.batch_shape else [design]
         )
         """The robots, one each."""
-        self.alterations = made(alterations, self.designs[0])
+        self.alterations = alterations_of(alterations, self.designs[0])
         """Of each of the simulated robots."""
         robots = robots_of(self.designs, task, self.alterations, seed)
         self.models: list[mujoco.MjModel] = [model for model, _ in robots]

@@ -274,6 +274,6 @@ def stacked(layouts: Sequence[Layout]) -> Layout:
                 "batch", name, None, f"must be the same in all designs of a batch: {name} differ"
             )
     numbers: dict[str, Any] = {
-        name: np.stack([getattr(one, name) for one in layouts]) for name in _NUMBERS
+        name: np.stack([getattr(layout, name) for layout in layouts]) for name in _NUMBERS
     }
     return dataclasses.replace(first, **numbers)

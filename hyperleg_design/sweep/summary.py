@@ -85,5 +85,5 @@ def base_values(sweep: Sweep, variant: str) -> dict[str, float]:
     Returns:
         Values by column; measures that the variant lacks are left out.
     """
-    values = measures.evaluate(sweep.made(sweep.base, variant), sweep.measures)
+    values = measures.evaluate(sweep.ablated(sweep.base, variant), sweep.measures)
     return {column: float(v[0]) for column, v in values.items() if np.isfinite(v[0])}

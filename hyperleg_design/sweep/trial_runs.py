@@ -169,8 +169,8 @@ def evaluate_values(
     """
     designs = sweep.design(values, variant).rows(np.arange(len(samples)))
     run = protocol_from_mapping(protocol, "protocol")
-    found, rejected = evaluate_all(load_policy(policy), designs, run, threads)
-    return trial_rows(found, rejected, samples, variant, run, policy)
+    evaluations, rejected = evaluate_all(load_policy(policy), designs, run, threads)
+    return trial_rows(evaluations, rejected, samples, variant, run, policy)
 
 
 def evaluate_all(
@@ -206,7 +206,7 @@ def evaluate_all(
 
 
 def trial_rows(
-    found: dict[int, Evaluation],
+    evaluations: dict[int, Evaluation],
     rejected: dict[int, str],
     samples: np.ndarray,
     variant: str,
@@ -219,7 +219,7 @@ def trial_rows(
     `hardest_motor`, the motor with the largest continuous use.
 
     Args:
-        found: evaluations by position in `samples`.
+        evaluations: by position in `samples`.
         rejected: reasons by position in `samples`.
         samples: numbers of the designs, `(n,)`.
         variant: name of the ablation.
@@ -233,28 +233,28 @@ def trial_rows(
 
     rows: list[dict[str, Any]] = []
     head = {"variant": variant, "protocol": kind_of(protocol), "policy": policy.parent.name}
-    for i, one in found.items():
-        for k, measures in enumerate(one.measures):
+    for i, evaluation in evaluations.items():
+        for k, measures in enumerate(evaluation.measures):
             rows.append(
                 {
                     "sample": int(samples[i]),
                     **head,
-                    "seed": one.seed,
-                    "trained": one.trained.kind,
-                    "outside": ", ".join(one.trained.outside),
+                    "seed": evaluation.seed,
+                    "trained": evaluation.trained.kind,
+                    "outside": ", ".join(evaluation.trained.outside),
                     "trial": k,
-                    "outcome": one.outcomes[k],
+                    "outcome": evaluation.outcomes[k],
                     "reason": "",
                     "hardest_motor": "",
                     "speed_use": np.nan,
                     **measures,
                 }
             )
-            use = one.motors[k]
+            use = evaluation.motors[k]
             if use is not None:
                 rows[-1] |= {
                     "hardest_motor": use.motors[int(np.argmax(use.continuous_use))],
-                    "speed_use": _speed_use(one.robot, use.peak_speed),
+                    "speed_use": _speed_use(evaluation.robot, use.peak_speed),
                 }
     for i, reason in rejected.items():
         rows.append(

@@ -12,9 +12,9 @@ import pytest
 from hyperleg_design.simulation.alteration import (
     Alteration,
     Live,
+    alterations_of,
     damps_motors,
     edited,
-    made,
     overrides,
     resistance,
 )
@@ -54,7 +54,7 @@ class Heavier(Alteration):
 
 
 class _Lagging(Live):
-    kept = ("held",)
+    hidden_state = ("held",)
 
     def prepare(self):
         self.held = np.zeros((self.count, len(self.machine.motors)))
@@ -151,7 +151,7 @@ def test_alterations_may_depend_on_the_design(design):
         simulation_model(design).body_mass.sum() + 1.0
     )
     assert environment.layout.weight == pytest.approx(layout_of(design).weight + 9.81)
-    assert made(None, design) == ()
+    assert alterations_of(None, design) == ()
 
 
 def test_edits_leave_the_given_model_alone_and_its_constants_follow(design):

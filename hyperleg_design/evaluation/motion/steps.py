@@ -51,15 +51,15 @@ def foot_contacts(trial: Trial, events: Events) -> Contacts:
 
 def _contacts_and_steps(trial: Trial, events: Events) -> tuple[Contacts, gait.Steps]:
     """Contacts and steps, found once for each trial and protocol."""
-    kept = _KEPT.get(trial)
-    if kept is None or kept[0] is not events:
+    cached = _KEPT.get(trial)
+    if cached is None or cached[0] is not events:
         contacts = _find_contacts(trial, events)
         steps = gait.find_steps(contacts.feet, contacts.heel, contacts.forefoot, trial.time_step)
         for values in (*vars(contacts).values(), *vars(steps).values()):
             values.flags.writeable = False
-        kept = (events, contacts, steps)
-        _KEPT[trial] = kept
-    return kept[1:]
+        cached = (events, contacts, steps)
+        _KEPT[trial] = cached
+    return cached[1:]
 
 
 def _find_contacts(trial: Trial, events: Events) -> Contacts:

@@ -19,7 +19,8 @@ COMPARED = ("velocity", "joint_torque", "motor_torque", "motor_torque_command", 
 
 
 def disagreements(logs: Sequence[Log]) -> dict[str, list[Finding]]:
-    """What single logs say differently from most of the others.
+    """Find where single logs differ from most of the others: in joints, declared metadata, or sizes
+    of signals.
 
     Args:
         logs: of one robot; two or more of the same role, or nothing is compared.
@@ -28,13 +29,13 @@ def disagreements(logs: Sequence[Log]) -> dict[str, list[Finding]]:
         Findings by name of a log; logs that agree with the majority are absent. Of two that
         disagree, the later one is named.
     """
-    found: dict[str, list[Finding]] = {}
+    findings: dict[str, list[Finding]] = {}
 
     def note(log: Log, signal: str, what: str, remedy: str) -> None:
-        found.setdefault(log.name, []).append(Finding(WARNING, signal, what, remedy))
+        findings.setdefault(log.name, []).append(Finding(WARNING, signal, what, remedy))
 
     if len(logs) < 2:
-        return found
+        return findings
     usual = _majority([tuple(sorted(log.joints)) for log in logs])
     for log in logs:
         extra, lacking = set(log.joints) - set(usual), set(usual) - set(log.joints)
@@ -66,7 +67,7 @@ def disagreements(logs: Sequence[Log]) -> dict[str, list[Finding]]:
                     f"is {ratio:.3g} times as large as in the other logs",
                     "check its unit, and that the motion is the same",
                 )
-    return found
+    return findings
 
 
 def _majority(values: list[Any]) -> Any:
@@ -85,11 +86,11 @@ def _comparable(value: Any) -> Any:
 
 def _sizes(log: Log) -> dict[str, float]:
     """Size of every compared column that moves: the 90th percentile of its magnitude."""
-    found = {}
+    sizes = {}
     for column, values in log.signals.items():
         known = np.abs(values[np.isfinite(values)])
         if column.partition("/")[0] in COMPARED and len(known):
             size = float(np.percentile(known, 90))
             if size > 0:
-                found[column] = size
-    return found
+                sizes[column] = size
+    return sizes

@@ -124,7 +124,7 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
     )
     refused = unusable(log, subject)
     measured = not any(f.signal == "t" or f.signal.startswith("position/") for f in refused)
-    found = [
+    findings = [
         *(Finding(NOTE, "", remark, "") for remark in log.metadata.remarks),
         *refused,
         *_required(log, subject),
@@ -133,7 +133,7 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
         *(implausible(log, subject) if measured else ()),
         *declarations(log.metadata, subject),
     ]
-    ordered = tuple(sorted(_merged(found), key=lambda f: SEVERITIES.index(f.severity)))
+    ordered = tuple(sorted(_merged(findings), key=lambda f: SEVERITIES.index(f.severity)))
     return Check(
         log.name, sampling, columns, ordered, excitation_of(log, subject) if measured else ()
     )
@@ -152,21 +152,25 @@ def _unit(column: str, subject: Subject | None) -> str:
 
 
 def _merged(findings: list[Finding]) -> list[Finding]:
-    """Notes that many columns of one signal share, told once."""
+    """The findings, with notes that several columns of one signal share as a single one."""
     alike: dict[tuple[str, ...], list[Finding]] = {}
-    for one in findings:
-        kind, slash, _ = one.signal.partition("/")
-        same = (kind, one.what, one.remedy) if one.severity == NOTE and slash else (str(id(one)),)
-        alike.setdefault(same, []).append(one)
+    for finding in findings:
+        kind, slash, _ = finding.signal.partition("/")
+        key = (
+            (kind, finding.what, finding.remedy)
+            if finding.severity == NOTE and slash
+            else (str(id(finding)),)
+        )
+        alike.setdefault(key, []).append(finding)
     merged = []
-    for one, *others in alike.values():
+    for finding, *others in alike.values():
         if others:
-            one = dataclasses.replace(
-                one,
-                signal=one.signal.partition("/")[0],
-                what=f"{one.what} ({1 + len(others)} columns)",
+            finding = dataclasses.replace(
+                finding,
+                signal=finding.signal.partition("/")[0],
+                what=f"{finding.what} ({1 + len(others)} columns)",
             )
-        merged.append(one)
+        merged.append(finding)
     return merged
 
 
@@ -220,28 +224,28 @@ def _clock(sampling: Sampling) -> Iterator[Finding]:
 
 
 def _columns(columns: tuple[Column, ...], sampling: Sampling) -> Iterator[Finding]:
-    for one in columns:
-        kind = one.column.partition("/")[0]
-        if one.missing == 1.0 and kind == "position":
-            continue  # told by `gates`
-        if one.missing == 1.0:
-            yield Finding(WARNING, one.column, "holds no values", "it counts as missing")
+    for column in columns:
+        kind = column.column.partition("/")[0]
+        if column.missing == 1.0 and kind == "position":
+            continue  # `gates` reports it
+        if column.missing == 1.0:
+            yield Finding(WARNING, column.column, "holds no values", "it counts as missing")
             continue
-        if one.missing > RULES.clock.missing:
-            text = f"{100 * one.missing:.1f} % of its values are missing"
-            yield Finding(WARNING, one.column, text, "the ticks beside them are left out")
-        if one.rate < 0.75 * sampling.rate and not one.constant:
-            how = "held" if one.held > 1 else "given"
-            text = f"is {how} at {one.rate:.3g} Hz in a log of {sampling.rate:.3g} Hz"
+        if column.missing > RULES.clock.missing:
+            text = f"{100 * column.missing:.1f} % of its values are missing"
+            yield Finding(WARNING, column.column, text, "the ticks beside them are left out")
+        if column.rate < 0.75 * sampling.rate and not column.constant:
+            manner = "held" if column.held > 1 else "given"
+            text = f"is {manner} at {column.rate:.3g} Hz in a log of {sampling.rate:.3g} Hz"
             severity = NOTE if kind in SLOW else WARNING
-            yield Finding(severity, one.column, text, "it counts at its own rate")
-        if kind in BOUNDED and one.saturated > RULES.clock.saturated:
+            yield Finding(severity, column.column, text, "it counts at its own rate")
+        if kind in BOUNDED and column.saturated > RULES.clock.saturated:
             text = (
-                f"sits at a bound, {one.low:.4g} or {one.high:.4g}, for "
-                f"{100 * one.saturated:.1f} % of the log"
+                f"sits at a bound, {column.low:.4g} or {column.high:.4g}, for "
+                f"{100 * column.saturated:.1f} % of the log"
             )
             remedy = "a sensor's range or a drive's limit: effects beyond it do not show"
-            yield Finding(WARNING, one.column, text, remedy)
-        if one.constant and kind in SENSED:
-            text = f"never changes from {one.low:.4g}"
-            yield Finding(WARNING, one.column, text, "is the sensor connected?")
+            yield Finding(WARNING, column.column, text, remedy)
+        if column.constant and kind in SENSED:
+            text = f"never changes from {column.low:.4g}"
+            yield Finding(WARNING, column.column, text, "is the sensor connected?")

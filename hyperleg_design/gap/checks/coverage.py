@@ -58,7 +58,7 @@ def beyond_references(tests: Sequence[Signals], references: Sequence[Signals]) -
 
 def _ends(logs: Sequence[Signals]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Ends of the positions [rad], and of the speed [rad/s], of each joint over some logs."""
-    positions = np.concatenate([one.position for one in logs])
-    speeds = np.abs(np.concatenate([one.velocity for one in logs]))
+    positions = np.concatenate([signals.position for signals in logs])
+    speeds = np.abs(np.concatenate([signals.velocity for signals in logs]))
     low, high = np.nanpercentile(positions, ENDS, axis=0)
     return low, high, np.nanpercentile(speeds, ENDS[1], axis=0)

@@ -25,12 +25,12 @@ def implausible_torques(log: Log, subject: Subject | None) -> Iterator[Finding]:
     Returns:
         The findings.
     """
-    told: set[str] = set()
+    checked_places: set[str] = set()
     for column, asked, torque in asked_torque(log, subject):
         place = column.partition("/")[2]
-        if place in told:
+        if place in checked_places:
             continue
-        told.add(place)
+        checked_places.add(place)
         slope, fit = fitted_slopes(asked[:, None], torque[:, None])
         if fit[0] < -RULES.unit.fits:
             yield Finding(
@@ -103,20 +103,20 @@ def asked_torque(log: Log, subject: Subject | None) -> list[tuple[str, np.ndarra
             asked[:, i] = stiffness * error - damping * speed
     motors = joints if subject is None else subject.motors
     of_motor = asked if subject is None else applied(subject.motor_from_joint, asked)
-    found = []
+    compared = []
     for kind, names, wanted in (
         ("joint_torque", joints, asked),
         ("motor_torque_command", motors, of_motor),
         ("motor_torque", motors, of_motor),
     ):
-        held = (
+        logged = (
             log.stack(kind, names)
             if subject is None or kind == "joint_torque"
             else of_motors(log, kind, subject)
         )
-        found += [
-            (f"{kind}/{name}", wanted[:, i], held[:, i])
+        compared += [
+            (f"{kind}/{name}", wanted[:, i], logged[:, i])
             for i, name in enumerate(names)
-            if np.isfinite(held[:, i]).any()
+            if np.isfinite(logged[:, i]).any()
         ]
-    return found
+    return compared

@@ -12,31 +12,34 @@ from hyperleg_design.errors import InputError, meant
 from hyperleg_design.gap.effects.effect import Effect
 
 
-def _found() -> dict[str, Effect]:
-    found = {}
-    for place in pkgutil.walk_packages(__path__, f"{__name__}."):
-        for kind in vars(importlib.import_module(place.name)).values():
+def _discovered_effects() -> dict[str, Effect]:
+    """One object of each concrete class of effects in the modules of this package, sorted."""
+    effects = {}
+    for module in pkgutil.walk_packages(__path__, f"{__name__}."):
+        for member in vars(importlib.import_module(module.name)).values():
             if (
-                inspect.isclass(kind)
-                and issubclass(kind, Effect)
-                and not inspect.isabstract(kind)
-                and kind.__module__ == place.name
+                inspect.isclass(member)
+                and issubclass(member, Effect)
+                and not inspect.isabstract(member)
+                and member.__module__ == module.name
             ):
-                found[kind.identifier] = kind()
-    return dict(sorted(found.items()))
+                effects[member.identifier] = member()
+    return dict(sorted(effects.items()))
 
 
-WEIGHED: dict[str, Effect] = _found()
+WEIGHED: dict[str, Effect] = _discovered_effects()
 """All effects that compete for an answer, by identifier, in the order of the alphabet."""
 
-EFFECTS: dict[str, Effect] = {name: one for name, one in WEIGHED.items() if one.listed}
+EFFECTS: dict[str, Effect] = {name: effect for name, effect in WEIGHED.items() if effect.listed}
 """Those of them that answers name as causes: the catalogue."""
 
 UNLISTED = WEIGHED.keys() - EFFECTS.keys()
 """Identifiers of the others."""
 
 LOOK_ALIKES: tuple[tuple[str, str, str], ...] = tuple(
-    (one.identifier, other, by) for one in EFFECTS.values() for other, by in one.look_alikes.items()
+    (effect.identifier, other, by)
+    for effect in EFFECTS.values()
+    for other, by in effect.look_alikes.items()
 )
 """Pairs that are taken for each other, and what separates them."""
 

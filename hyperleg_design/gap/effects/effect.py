@@ -102,7 +102,7 @@ class Effect(ABC):
         """Names of the places where it can sit on this robot."""
 
     def place(self, location: str, subject: Subject) -> str:
-        """The one of `locations` that is meant.
+        """The element of `locations` that a name means.
 
         Args:
             location: name of the place, as people may write it.
@@ -114,14 +114,14 @@ class Effect(ABC):
         Raises:
             InputError: none.
         """
-        found = self.locations(subject)
-        if location in found:
+        locations = self.locations(subject)
+        if location in locations:
             return location
-        if not found:
+        if not locations:
             raise InputError(
                 self.identifier, "location", location, f"this robot has no {self.kind} for it"
             )
-        raise InputError(self.identifier, "location", location, meant(location, found))
+        raise InputError(self.identifier, "location", location, meant(location, locations))
 
     def excited(self, log: Log, motion: Motion) -> Excitation:
         """Whether a log can show it, where, and why or why not; by default as it `needs`.
@@ -196,13 +196,12 @@ class Effect(ABC):
         Returns:
             Values `(parameters,)`.
         """
-        values = self.nulls
-        for k, (one, usual) in enumerate(
-            zip(self.parameters, self.usual(location, subject).tolist(), strict=True)
-        ):
-            if not one.shape:
-                above = min(one.null + size * usual, one.high)
-                values[k] = above if above > one.null else max(one.null - size * usual, one.low)
+        values, usual = self.nulls, self.usual(location, subject).tolist()
+        for k, (parameter, distance) in enumerate(zip(self.parameters, usual, strict=True)):
+            if not parameter.shape:
+                null = parameter.null
+                above = min(null + size * distance, parameter.high)
+                values[k] = above if above > null else max(null - size * distance, parameter.low)
         return values
 
     def bounds(self, location: str, subject: Subject) -> np.ndarray:

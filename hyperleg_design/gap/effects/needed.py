@@ -38,18 +38,18 @@ def needed(
         signals.velocity if velocity is None else velocity,
         signals.acceleration if acceleration is None else acceleration,
     )
-    found = {"motion": rigid.inverse_dynamics(subject, *motion, base, rotors=rotors)}
+    torques = {"motion": rigid.inverse_dynamics(subject, *motion, base, rotors=rotors)}
     if "base" in signals.residual and base is not None:
-        found["base"] = rigid.base_wrench(subject, *motion, base)
+        torques["base"] = rigid.base_wrench(subject, *motion, base)
     if signals.pad_force is not None:
         rotation = None if base is None else base.rotation
         torque, wrench = pads.contact_torque(
             subject, position, rotation, np.nan_to_num(signals.pad_force)
         )
-        found["motion"] = found["motion"] - torque
-        if "base" in found:
-            found["base"] = found["base"] - wrench
-    return found
+        torques["motion"] = torques["motion"] - torque
+        if "base" in torques:
+            torques["base"] = torques["base"] - wrench
+    return torques
 
 
 @memoized

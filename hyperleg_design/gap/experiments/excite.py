@@ -83,7 +83,7 @@ def design_experiment(
         raise InfeasibleError(
             f"{subject.name}: no motion fits; a default posture in which gravity loads these "
             "joints less may help, or stronger motors: "
-            f"{'; '.join(f'{one.name} {one.why}' for one in left_out)}"
+            f"{'; '.join(f'{motion.name} {motion.why}' for motion in left_out)}"
         )
     blocks = info.blocks_of(subject)
     grams = {}

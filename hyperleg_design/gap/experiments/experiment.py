@@ -27,21 +27,21 @@ class Experiment:
     minutes: float
     """Time that it takes, assumed."""
 
-    def separates(self, one: str, other: str) -> bool:
-        """Decide whether this experiment tells two effects apart: one of them states it of the
-        other.
+    def separates(self, effect: str, other: str) -> bool:
+        """Decide whether this experiment tells two effects apart, by what either of them declares
+        in `told_apart`.
 
         Args:
-            one: identifier of an effect.
+            effect: identifier of an effect.
             other: identifier of another effect.
 
         Returns:
             True if it does.
         """
-        return self._tells(one, other) or self._tells(other, one)
+        return self._declares(effect, other) or self._declares(other, effect)
 
-    def _tells(self, one: str, other: str) -> bool:
-        return one in EFFECTS and other in EFFECTS[one].told_apart.get(self.name, ())
+    def _declares(self, effect: str, other: str) -> bool:
+        return effect in EFFECTS and other in EFFECTS[effect].told_apart.get(self.name, ())
 
 
 EXPERIMENTS: tuple[Experiment, ...] = (
@@ -150,10 +150,12 @@ def as_mapping(experiment: Experiment, causes: Sequence[Cause]) -> dict[str, Any
         Name, instruction, time, and the causes that it separates.
     """
     first = causes[0]
-    told = [c for c in causes[1:] if experiment is ALONE or experiment.separates(first[0], c[0])]
+    separated = [
+        c for c in causes[1:] if experiment is ALONE or experiment.separates(first[0], c[0])
+    ]
     return {
         "name": experiment.name,
         "do": experiment.do,
         "minutes": experiment.minutes,
-        "separates": [" at ".join(c) for c in (first, *told)],
+        "separates": [" at ".join(c) for c in (first, *separated)],
     }

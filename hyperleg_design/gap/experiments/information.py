@@ -101,13 +101,13 @@ def blocks_of(subject: Subject, effects: Iterable[str] | None = None) -> Blocks:
     values: list[np.ndarray] = []
     column = 0
     for identifier in effects if effects is not None else EFFECTS:
-        one = EFFECTS[identifier]
-        for location in one.locations(subject):
+        effect = EFFECTS[identifier]
+        for location in effect.locations(subject):
             places.append((identifier, location))
             start.append(column)
-            names.append(tuple(p.name for p in one.parameters))
-            values.append(one.example(location, subject))
-            column += len(one.parameters) + 1
+            names.append(tuple(p.name for p in effect.parameters))
+            values.append(effect.example(location, subject))
+            column += len(effect.parameters) + 1
     return Blocks(tuple(places), tuple(start), tuple(names), tuple(values))
 
 
@@ -129,36 +129,40 @@ def information(signals: Signals, blocks: Blocks, *, noise: float = NOISE) -> np
     known = {name: np.isfinite(signals.residual[name]) & signals.valid[:, None] for name in scales}
     shape = (len(signals.time[::every]), blocks.columns)
     rows = {name: np.zeros((scale.size, *shape), np.float32) for name, scale in scales.items()}
-    for start, (effect, location), at in zip(
+    for start, (effect, location), operating_point in zip(
         blocks.start, blocks.places, blocks.values, strict=True
     ):
-        made = _block(EFFECTS[effect], signals, location, at)
-        for name in made.keys() & scales.keys():
-            found = made[name]
-            for row in np.flatnonzero(np.any(found != 0, (0, 1))):
-                own, values = known[name][:, row], found[..., row]
-                values = np.where(own & np.isfinite(values), values, 0.0)
-                kept = low_passed(values, signals.step, BAND)[:, ::every] * own[::every]
-                columns = slice(start, start + len(found))
-                rows[name][row, :, columns] = kept.T / scales[name][row]
+        derivatives = _block(EFFECTS[effect], signals, location, operating_point)
+        for name in derivatives.keys() & scales.keys():
+            block = derivatives[name]
+            for row in np.flatnonzero(np.any(block != 0, (0, 1))):
+                known_ticks, values = known[name][:, row], block[..., row]
+                values = np.where(known_ticks & np.isfinite(values), values, 0.0)
+                decimated = (
+                    low_passed(values, signals.step, BAND)[:, ::every] * known_ticks[::every]
+                )
+                columns = slice(start, start + len(block))
+                rows[name][row, :, columns] = decimated.T / scales[name][row]
     total = np.zeros((blocks.columns, blocks.columns))
     for part in rows.values():
-        for told in part:
-            used = np.flatnonzero(np.any(told != 0, 0))
-            total[np.ix_(used, used)] += told[:, used].T.astype(float) @ told[:, used]
+        for jacobian in part:
+            nonzero = np.flatnonzero(np.any(jacobian != 0, 0))
+            total[np.ix_(nonzero, nonzero)] += (
+                jacobian[:, nonzero].T.astype(float) @ jacobian[:, nonzero]
+            )
     return total * (signals.step * every / (2 * NOISE_TIME))
 
 
 def _block(
-    one: Effect, signals: Signals, location: str, values: np.ndarray
+    effect: Effect, signals: Signals, location: str, values: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """By residual, derivatives by each parameter times its scale, and the trace at the values
-    `(parameters + 1, t, rows)`.
+    """By residual: derivatives of an effect's trace by each parameter, times the parameter's scale,
+    and the trace at the values `(parameters + 1, t, rows)`.
     """
     subject = signals.subject
     count = len(values)
-    size = scales_of(one, location, subject, values)
-    low, high = one.bounds(location, subject)
+    size = scales_of(effect, location, subject, values)
+    low, high = effect.bounds(location, subject)
     tried = np.repeat(values[None], 2 * count + 1, 0)
     for p in range(count):
         tried[2 * p, p] = min(values[p] + STEP * size[p], high[p])
@@ -168,19 +172,19 @@ def _block(
         - tried[2 * np.arange(count) + 1, np.arange(count)]
     )
     scale = np.divide(size, width, out=np.zeros(count), where=width > 0)
-    out = {}
-    for residual_name, traces in one.trace(signals, location, tried).items():
+    block = {}
+    for residual_name, traces in effect.trace(signals, location, tried).items():
         slopes = (traces[0 : 2 * count : 2] - traces[1 : 2 * count : 2]) * scale[:, None, None]
-        out[residual_name] = np.concatenate([slopes, traces[-1:]])
-    return out
+        block[residual_name] = np.concatenate([slopes, traces[-1:]])
+    return block
 
 
-def scales_of(one: Effect, location: str, subject: Subject, values: np.ndarray) -> np.ndarray:
+def scales_of(effect: Effect, location: str, subject: Subject, values: np.ndarray) -> np.ndarray:
     """Compute the size of each parameter by which derivatives are taken: its usual distance, or its
     value where that is less.
 
     Args:
-        one: the effect.
+        effect: the effect.
         location: where it sits.
         subject: the robot.
         values: of the parameters.
@@ -188,7 +192,7 @@ def scales_of(one: Effect, location: str, subject: Subject, values: np.ndarray) 
     Returns:
         The sizes, `(parameters,)`.
     """
-    usual = np.abs(one.usual(location, subject))
+    usual = np.abs(effect.usual(location, subject))
     return np.where(values == 0, usual, np.minimum(usual, np.abs(values)))
 
 
@@ -206,8 +210,8 @@ def standard_deviations(
     Returns:
         Deviations by parameter, in its unit; infinite where these data do not show one.
     """
-    one = EFFECTS[place[0]]
-    scale = scales_of(one, place[1], subject, blocks.values[blocks.places.index(place)])
+    effect = EFFECTS[place[0]]
+    scale = scales_of(effect, place[1], subject, blocks.values[blocks.places.index(place)])
     span = blocks.span(place)
     part = gram[np.ix_(span, span)]
     deviations = {}

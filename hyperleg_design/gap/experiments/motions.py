@@ -141,17 +141,17 @@ def recommended(
             lambda: trajectories.fourier(ticks(FOURIER), room, FOURIER_BASE, HARMONICS, phases),
         ),
     }
-    found: list[Motion] = []
-    left: list[LeftOut] = []
+    motions: list[Motion] = []
+    left_out: list[LeftOut] = []
     for name, (purpose, shape) in shapes.items():
         motion = fitted(subject, room, name, purpose, shape(), 1 / rate)
         if isinstance(motion, Motion):
-            found.append(motion)
+            motions.append(motion)
         else:
-            left.append(motion)
+            left_out.append(motion)
     swing = swinging(subject, room, rate)
-    (found if isinstance(swing, Motion) else left).append(swing)  # type: ignore[arg-type]
-    return found, left
+    (motions if isinstance(swing, Motion) else left_out).append(swing)  # type: ignore[arg-type]
+    return motions, left_out
 
 
 def fitted(
@@ -191,9 +191,9 @@ def fitted(
             )
             continue
         if knows_gains(subject):
-            found, _, torque = closed_loop(subject, step, target, position[0])
-            real = use_of(subject, room, found, step, torque)
-            if not np.isfinite(found).all() or real.range > RANGE_SLACK or real.envelope > 1:
+            rehearsed, _, torque = closed_loop(subject, step, target, position[0])
+            real = use_of(subject, room, rehearsed, step, torque)
+            if not np.isfinite(rehearsed).all() or real.range > RANGE_SLACK or real.envelope > 1:
                 why = f"{real.worst} comes too near a limit in the rehearsal"
                 continue
         return Motion(name, purpose, time, target, position, float(scale), use)

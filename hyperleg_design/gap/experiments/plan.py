@@ -69,7 +69,7 @@ def plan_mapping(experiment: Experiment) -> dict[str, Any]:
             }
             for m in experiment.motions
         ],
-        "left_out": [asdict(one) for one in experiment.left_out],
+        "left_out": [asdict(motion) for motion in experiment.left_out],
         "shortest_set": {
             "motions": list(experiment.chosen),
             "duration": float(sum(experiment.motion(n).duration for n in experiment.chosen)),

@@ -129,9 +129,9 @@ def closed_loop(
         model.opt.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONTACT) | (
             0 if on else int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
         )
-        found, _ = rollout.rollout(model, data, state[None], control[None])
-        state = found[0, -1]
-        rows.append(found[0, substeps - 1 :: substeps, 1:])
+        states_of_part, _ = rollout.rollout(model, data, state[None], control[None])
+        state = states_of_part[0, -1]
+        rows.append(states_of_part[0, substeps - 1 :: substeps, 1:])
     states = np.concatenate(rows)[: len(target)]
     position, velocity = states[:, : model.nq], states[:, model.nq : model.nq + model.nv]
     stiffness, damping = np.nan_to_num(subject.gains).T

@@ -31,17 +31,17 @@ def chosen_blocks(rows: int, columns: int) -> np.ndarray:
     return chosen
 
 
-def shortened(rows: int, kept: int) -> str:
+def shortened(rows: int, rows_read: int) -> str:
     """Write the remark on a recording that is too long to be read whole.
 
     Args:
         rows: of the file.
-        kept: rows that were read.
+        rows_read: of them.
 
     Returns:
         The remark.
     """
     return (
-        f"too long to be held in memory: {kept} of its {rows} rows were read, in blocks at full "
-        f"rate spread over the recording"
+        f"too long to be held in memory: {rows_read} of its {rows} rows were read, in blocks at "
+        f"full rate spread over the recording"
     )

@@ -131,8 +131,8 @@ class Log:
         Returns:
             `(t,)`; NaN where the column is missing.
         """
-        found = self.signals.get(column)
-        return np.full(len(self.time), np.nan) if found is None else found
+        values = self.signals.get(column)
+        return np.full(len(self.time), np.nan) if values is None else values
 
     def names(self, *kinds: str) -> tuple[str, ...]:
         """List the joints or motors that have any of some signals.
@@ -328,14 +328,14 @@ def _inside(content: bytes | None, path: Path) -> dict[str, Any]:
     if content is None:
         return {}
     try:
-        found = json.loads(content)
+        fields = json.loads(content)
     except ValueError:
         raise InputError(path.name, "schema metadata hyperleg", None, "is not JSON") from None
-    if not isinstance(found, dict):
+    if not isinstance(fields, dict):
         raise InputError(
-            path.name, "schema metadata hyperleg", found, "expects names with values, { ... }"
+            path.name, "schema metadata hyperleg", fields, "expects names with values, { ... }"
         )
-    return found
+    return fields
 
 
 def _frozen(values: Any, where: str, column: str) -> np.ndarray:

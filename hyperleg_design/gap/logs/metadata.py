@@ -229,21 +229,23 @@ def _numbers(value: Any, count: int, where: str, name: str) -> tuple[float, ...]
 
 
 def _gravity(value: Any, where: str, name: str) -> tuple[float, ...]:
-    found = _numbers(value, 3, where, name)
-    if math.hypot(*found) > MAX_GRAVITY:
+    gravity = _numbers(value, 3, where, name)
+    if math.hypot(*gravity) > MAX_GRAVITY:
         raise InputError(where, name, value, "expects m/s^2, such as [0, 0, -9.81]")
-    return found
+    return gravity
 
 
 def _numbers_by_name(value: Any, where: str, name: str) -> dict[str, Any]:
     count, fits, remedy = NUMBERS[name]
-    found = {}
+    numbers_by_name = {}
     for key, numbers in _mapping(value, where, name).items():
         place, flat = f"{name}.{key}", numbers
         if name == "payload" and isinstance(flat, list | tuple) and len(flat) == 2:
             mass, com = flat
             flat = [mass, *com] if isinstance(com, list | tuple) else flat
-        found[key] = _numbers(flat, count, where, place) if count else _number(flat, where, place)
-        if not fits(found[key]):
+        numbers_by_name[key] = (
+            _numbers(flat, count, where, place) if count else _number(flat, where, place)
+        )
+        if not fits(numbers_by_name[key]):
             raise InputError(where, place, numbers, remedy)
-    return found
+    return numbers_by_name

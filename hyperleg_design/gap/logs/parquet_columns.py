@@ -82,11 +82,11 @@ def parquet_columns(
                     for column in wanted:
                         parts[column].append(_array(batch.column(column))[keep])
         start += count
-    found = {c: np.concatenate(parts.pop(c)) for c in wanted}
-    time = found.pop("t")
+    columns = {c: np.concatenate(parts.pop(c)) for c in wanted}
+    time = columns.pop("t")
     if len(time) < rows:
         remarks.append(shortened(rows, len(time)))
-    return time, found, remarks
+    return time, columns, remarks
 
 
 def _array(column: Any) -> np.ndarray:

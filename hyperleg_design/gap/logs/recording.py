@@ -64,13 +64,13 @@ def log_of_trial(
     Raises:
         InputError: a trial that ended at once.
     """
-    found = {n: getattr(trial, n) for n in TRIAL_SIGNALS} | dict(trial.told)
+    samples = {n: getattr(trial, n) for n in TRIAL_SIGNALS} | dict(trial.told)
     extra = {"outcome": trial.outcome, "end_time": trial.end_time}
     return log_of_signals(
         trial.design,
         trial.layout,
         trial.time_step,
-        {n: v for n, v in found.items() if v is not None},
+        {n: v for n, v in samples.items() if v is not None},
         name,
         {"extra": extra, **(metadata or {})},
     )
@@ -96,17 +96,21 @@ def write_logs(folder: str | os.PathLike[str], evaluations: Sequence[Evaluation]
     names: list[str] = []
     robots: dict[str, str] = {}
     with output_folder(folder) as place:
-        for number, one in enumerate(evaluations):
-            stem = f"{_file_name(one.policy)}_{_file_name(one.protocol.name)}"
+        for number, evaluation in enumerate(evaluations):
+            stem = f"{_file_name(evaluation.policy)}_{_file_name(evaluation.protocol.name)}"
             if any(name.startswith(f"{stem}_") for name in names):
                 stem = f"{stem}_{number}"
-            for index, trial in enumerate(one.trials):
+            for index, trial in enumerate(evaluation.trials):
                 if trial.samples < 2:
                     continue
                 name = f"{stem}_{index:03d}"
-                notes = f"trial {index} of {one.protocol.name} with {one.policy}, simulated"
-                said = {"robot": _robot_file(trial.design, robots), "session": stem, "notes": notes}
-                log = log_of_trial(trial, name=name, metadata=said)
+                protocol, policy = evaluation.protocol.name, evaluation.policy
+                metadata = {
+                    "robot": _robot_file(trial.design, robots),
+                    "session": stem,
+                    "notes": f"trial {index} of {protocol} with {policy}, simulated",
+                }
+                log = log_of_trial(trial, name=name, metadata=metadata)
                 write_log(place / f"{name}.parquet", log)
                 names.append(f"{name}.parquet")
         for robot, text in robots.items():
@@ -138,9 +142,9 @@ def log_of_signals(
     design: RobotDesign,
     layout: Layout,
     time_step: float,
-    found: Mapping[str, np.ndarray],
+    samples: Mapping[str, np.ndarray],
     name: str,
-    said: Mapping[str, Any],
+    metadata: Mapping[str, Any],
 ) -> Log:
     """Make the log of the signals of one simulation.
 
@@ -148,9 +152,9 @@ def log_of_signals(
         design: the robot.
         layout: of its simulation.
         time_step: of the simulation [s].
-        found: `TRIAL_SIGNALS`, and what drives and sensors tell, `(t, ...)` each.
+        samples: `TRIAL_SIGNALS`, and what drives and sensors tell, `(t, ...)` each.
         name: of the log.
-        said: fields of `Metadata` to replace.
+        metadata: fields of `Metadata` to replace.
 
     Returns:
         The log.
@@ -158,63 +162,63 @@ def log_of_signals(
     Raises:
         InputError: fewer than two samples.
     """
-    rows = len(found["joint_position"])
+    rows = len(samples["joint_position"])
     if rows < 2:
         raise InputError(name, "samples", rows, "ended at once: a log needs two samples at least")
     model, limbs = actuation_model(design), len(layout.limbs)
-    found = _as_told(model, limbs, found)
-    known = {kind: found[n] for kind, n in JOINT_SIGNALS.items() if n in found}
-    signals = columns_of(known, layout.joints) | _motor_signals(design, layout, found)
-    signals |= _base_signals(found, time_step) | _contact_signals(layout, found["pad_force"])
+    samples = _as_reported(model, limbs, samples)
+    known = {kind: samples[n] for kind, n in JOINT_SIGNALS.items() if n in samples}
+    signals = columns_of(known, layout.joints) | _motor_signals(design, layout, samples)
+    signals |= _base_signals(samples, time_step) | _contact_signals(layout, samples["pad_force"])
     pairs = np.tile(np.column_stack([model.stiffness, model.damping]), (limbs, 1)).tolist()
     gains = {joint: (k, d) for joint, (k, d) in zip(layout.joints, pairs, strict=True)}
     constants = dict(zip(layout.motors, _torque_constants(design, layout).tolist(), strict=True))
-    metadata: dict[str, Any] = {
+    defaults: dict[str, Any] = {
         "robot": design.name,
         "base": "floating",
         "gains": gains,
         "torque_constant": constants,
         "gravity": (0, 0, -GRAVITY),
     }
-    return Log(name, np.arange(rows) * time_step, signals, Metadata(**(metadata | dict(said))))
+    return Log(name, np.arange(rows) * time_step, signals, Metadata(**(defaults | dict(metadata))))
 
 
-def _as_told(
-    model: ActuationModel, limbs: int, found: Mapping[str, np.ndarray]
+def _as_reported(
+    model: ActuationModel, limbs: int, samples: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
-    """Signals as drives and sensors tell them; `motor_command` and `acceleration_error` only where
-    they tell something of their own.
+    """Signals as drives and sensors of a simulation with alterations report them, in place of the
+    true ones.
     """
-    told = {
-        name.removeprefix(TOLD): values for name, values in found.items() if name.startswith(TOLD)
+    reported = {
+        name.removeprefix(TOLD): values for name, values in samples.items() if name.startswith(TOLD)
     }
-    found = dict(found)
-    if not told:
-        return found
-    found["base_angular_velocity"] = told.pop("angular_velocity")
-    found |= told
-    legs = (len(told["motor_torque"]), limbs, -1)
-    found["driven_joint_torque"] = (
-        told["motor_torque"].reshape(legs) @ model.joint_from_motor.T
+    samples = dict(samples)
+    if not reported:
+        return samples
+    samples["base_angular_velocity"] = reported.pop("angular_velocity")
+    samples |= reported
+    legs = (len(reported["motor_torque"]), limbs, -1)
+    samples["driven_joint_torque"] = (
+        reported["motor_torque"].reshape(legs) @ model.joint_from_motor.T
     ).reshape(legs[0], -1)
-    return found
+    return samples
 
 
 def _motor_signals(
-    design: RobotDesign, layout: Layout, found: Mapping[str, np.ndarray]
+    design: RobotDesign, layout: Layout, samples: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
     columns = {
-        "motor_torque": found["motor_torque"],
-        "motor_current": found["motor_torque"] / _torque_constants(design, layout),
-        "motor_velocity": found["motor_velocity"],
+        "motor_torque": samples["motor_torque"],
+        "motor_current": samples["motor_torque"] / _torque_constants(design, layout),
+        "motor_velocity": samples["motor_velocity"],
     }
-    if "motor_command" in found:
-        columns = {"motor_torque_command": found["motor_command"], **columns}
-    elif "joint_target" in found:
-        model, legs = actuation_model(design), (len(found["joint_target"]), len(layout.limbs), -1)
-        error = (found["joint_target"] - found["joint_position"]).reshape(legs)
-        wanted = model.stiffness * error - model.damping * found["joint_velocity"].reshape(legs)
-        command = (wanted @ model.motor_from_joint.T).reshape(len(wanted), -1)
+    if "motor_command" in samples:
+        columns = {"motor_torque_command": samples["motor_command"], **columns}
+    elif "joint_target" in samples:
+        model, legs = actuation_model(design), (len(samples["joint_target"]), len(layout.limbs), -1)
+        error = (samples["joint_target"] - samples["joint_position"]).reshape(legs)
+        torque = model.stiffness * error - model.damping * samples["joint_velocity"].reshape(legs)
+        command = (torque @ model.motor_from_joint.T).reshape(len(torque), -1)
         columns = {"motor_torque_command": command, **columns}
     return columns_of(columns, layout.motors)
 
@@ -226,31 +230,31 @@ def _torque_constants(design: RobotDesign, layout: Layout) -> np.ndarray:
     return np.tile(np.array(constants), len(layout.limbs))
 
 
-def _base_signals(found: Mapping[str, np.ndarray], time_step: float) -> dict[str, np.ndarray]:
-    velocity, orientation = found["base_velocity"], found["base_orientation"]
+def _base_signals(samples: Mapping[str, np.ndarray], time_step: float) -> dict[str, np.ndarray]:
+    velocity, orientation = samples["base_velocity"], samples["base_orientation"]
     acceleration = np.full_like(velocity, np.nan)
     acceleration[:-1] = np.diff(velocity, axis=0) / time_step
     rotation = quaternion_matrix(np.roll(orientation, -1, axis=-1).T)  # (3, 3, t)
-    felt = np.einsum("jit,tj->ti", rotation, acceleration + np.array([0.0, 0.0, GRAVITY]))
-    felt += found.get("acceleration_error", 0.0)
+    specific_force = np.einsum("jit,tj->ti", rotation, acceleration + np.array([0.0, 0.0, GRAVITY]))
+    specific_force += samples.get("acceleration_error", 0.0)
     parts = {
-        "accelerometer": felt,
-        "base_position": found["base_position"],
+        "accelerometer": specific_force,
+        "base_position": samples["base_position"],
         "base_velocity": _at_its_time(velocity),
     }
-    if "base_angular_velocity" in found:
-        parts = {"gyro": _at_its_time(found["base_angular_velocity"]), **parts}
+    if "base_angular_velocity" in samples:
+        parts = {"gyro": _at_its_time(samples["base_angular_velocity"]), **parts}
     return columns_of(parts, "xyz") | columns_of({"base_orientation": orientation}, "wxyz")
 
 
 def _at_its_time(velocity: np.ndarray) -> np.ndarray:
-    """Velocities `(t, k)` at the time of the places beside them: MuJoCo's are those of half a step
-    before, as it steps them first.
+    """Velocities `(t, k)` at the times of the positions beside them: those of MuJoCo, which steps
+    velocities first, are half a step older.
     """
-    found = velocity.copy()
-    found[:-1] = (velocity[:-1] + velocity[1:]) / 2
-    found[-1] += (velocity[-1] - velocity[-2]) / 2
-    return found
+    centred = velocity.copy()
+    centred[:-1] = (velocity[:-1] + velocity[1:]) / 2
+    centred[-1] += (velocity[-1] - velocity[-2]) / 2
+    return centred
 
 
 def _contact_signals(layout: Layout, pad_force: np.ndarray) -> dict[str, np.ndarray]:

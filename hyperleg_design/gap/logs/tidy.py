@@ -85,6 +85,6 @@ def check_clock(time: np.ndarray, name: str) -> None:
     back = np.flatnonzero(np.diff(time) <= 0)
     if len(back):
         row = int(back[0]) + 1
-        found = f"{time[row]:.9g} s in row {row} after {time[row - 1]:.9g} s"
+        times = f"{time[row]:.9g} s in row {row} after {time[row - 1]:.9g} s"
         remedy = "runs backwards or repeats: sort the rows, or split the recording there"
-        raise InputError(name, "t", found, remedy)
+        raise InputError(name, "t", times, remedy)

@@ -42,31 +42,31 @@ def of_design(design: RobotDesign, path: Path, base: str, known: set[str] | None
     Raises:
         InputError: a batch of designs, or none of its joints is known.
     """
-    drawn = build_tree(design)
-    base = base or ("floating" if drawn.floating else "fixed")
-    every = [j.name for j in drawn.moving]
-    kept = robot_file.kept_joints(every, known, design.name)
+    design_tree = build_tree(design)
+    base = base or ("floating" if design_tree.floating else "fixed")
+    all_joints = [j.name for j in design_tree.moving]
+    free_joints = robot_file.free_joints(all_joints, known, design.name)
     spec = _spec(design, base)
     robot_file.strip_drives(spec)
     for group in (spec.sensors, spec.keys):
-        for item in list(group):
-            spec.delete(item)
+        for element in list(group):
+            spec.delete(element)
     for joint in spec.joints:
         joint.frictionloss = 0.0
     robot_file.set_base(spec, base, path)
-    held = robot_file.lock(spec, kept)
-    moving = [joint for joint in drawn.moving if joint.name in kept]
+    locked = robot_file.lock(spec, free_joints)
+    moving = [joint for joint in design_tree.moving if joint.name in free_joints]
     limbs, names = design.copies, transmission.motor_names(design)
     sections = {
         prefixed(limb, name): section
         for limb in limbs
         for name, section in design.joint_sections.items()
     }
-    own = [sections[joint.name] for joint in moving]
-    full = np.kron(np.eye(len(limbs)), transmission.joint_from_motor(design))
-    full = full[[list(sections).index(joint.name) for joint in moving]]
-    used = np.flatnonzero(np.any(full != 0, 0))
-    full = full[:, used]
+    joint_sections = [sections[joint.name] for joint in moving]
+    joint_from_motor = np.kron(np.eye(len(limbs)), transmission.joint_from_motor(design))
+    joint_from_motor = joint_from_motor[[list(sections).index(joint.name) for joint in moving]]
+    used = np.flatnonzero(np.any(joint_from_motor != 0, 0))
+    joint_from_motor = joint_from_motor[:, used]
     motors = [prefixed(limb, name) for limb in limbs for name in names]
     used_names = tuple(motors[i] for i in used)
 
@@ -74,7 +74,7 @@ def of_design(design: RobotDesign, path: Path, base: str, known: set[str] | None
         return np.tile(np.asarray(values, float)[: len(names)], len(limbs))[used]
 
     rotor = of_motors(rotor_inertia(design))
-    add_rotors(spec, kept, used_names, full, rotor)
+    add_rotors(spec, free_joints, used_names, joint_from_motor, rotor)
     model = robot_file.compiled(spec, path)
     tree = mechanism_of(model)
     layout = layout_of(design)
@@ -93,12 +93,12 @@ def of_design(design: RobotDesign, path: Path, base: str, known: set[str] | None
         base=base,
         model=model,
         tree=tree,
-        joint_from_motor=full,
+        joint_from_motor=joint_from_motor,
         motors=used_names,
         motor_aliases=used_names,
         rotor_inertia=rotor,
         armature=np.zeros(len(moving)),
-        gains=np.array([[joint.stiffness, joint.damping] for joint in own], float),
+        gains=np.array([[joint.stiffness, joint.damping] for joint in joint_sections], float),
         torque_limit=of_motors(envelope.peak_torque),
         stall_torque=of_motors(envelope.stall_torque),
         no_load_speed=of_motors(envelope.no_load_speed),
@@ -110,7 +110,7 @@ def of_design(design: RobotDesign, path: Path, base: str, known: set[str] | None
         default=np.array([joint.default for joint in moving]),
         feet=layout.feet,
         pads=pads,
-        unlogged=held,
+        unlogged=locked,
         notes=notes if rods else [],
         imu_rotation=np.eye(3),
         imu_position=np.zeros(3),

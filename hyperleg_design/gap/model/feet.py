@@ -24,7 +24,7 @@ def pads_of(model: Any, tree: Mechanism, feet: Mapping[str, int] | None = None) 
     """
     import mujoco
 
-    found = []
+    pads = []
     for geom in range(model.ngeom):
         name = model.body(int(model.geom_bodyid[geom])).name
         if name not in tree.links or not (model.geom_contype[geom] or model.geom_conaffinity[geom]):
@@ -38,8 +38,8 @@ def pads_of(model: Any, tree: Mechanism, feet: Mapping[str, int] | None = None) 
         for index, point in enumerate(points):
             title = label if len(points) == 1 else f"{label}_{index}"
             place = float(point[0]), float(point[1]), float(point[2])
-            found.append(Pad(title, foot, tree.links.index(name), place, radius))
-    return tuple(found)
+            pads.append(Pad(title, foot, tree.links.index(name), place, radius))
+    return tuple(pads)
 
 
 def feet_of(model: Any, tree: Mechanism) -> tuple[tuple[str, ...], tuple[Pad, ...]]:

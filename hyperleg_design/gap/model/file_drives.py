@@ -45,26 +45,26 @@ class Drives:
     notes: tuple[str, ...]
 
 
-def read_drives(model: Any, kept: Collection[str]) -> Drives:
+def read_drives(model: Any, free_joints: Collection[str]) -> Drives:
     """Read the drives of a compiled file.
 
     Args:
         model: the compiled model.
-        kept: names of the joints that are kept.
+        free_joints: names of the joints that stay free.
 
     Returns:
         Drives over these joints, in the model's order.
     """
     import mujoco
 
-    single = [j for j in single_joints(model) if _name(model, j) in kept]
+    single = [j for j in single_joints(model) if _name(model, j) in free_joints]
     joints = tuple(_name(model, j) for j in single)
     dofs = np.array([model.jnt_dofadr[j] for j in single])
     count = len(joints)
     notes: list[str] = []
     moment = _moment(model)
     tendons = fixed_tendons(model, single)
-    found = []
+    usable_indices = []
     for index in range(model.nu):
         kind = mujoco.mjtTrn(model.actuator_trntype[index]).name
         wraps_sites = kind == "mjTRN_TENDON" and not _is_fixed_tendon(
@@ -76,8 +76,8 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
                 f"with posture: left out"
             )
         elif np.any(moment[index, dofs]):
-            found.append(index)
-    usable = np.array(found, int)
+            usable_indices.append(index)
+    usable = np.array(usable_indices, int)
     matrix = moment[usable][:, dofs].T
     names = [model.actuator(i).name or f"actuator_{i}" for i in usable]
     limit = np.array([_force_limit(model, i) for i in usable])
@@ -88,14 +88,14 @@ def read_drives(model: Any, kept: Collection[str]) -> Drives:
     gains = np.full((count, 2), np.nan)
     if np.all(np.count_nonzero(matrix, 0) <= 1):
         own = matrix != 0
-        driven = own.any(1) if found else np.ones(count, bool)
+        driven = own.any(1) if usable_indices else np.ones(count, bool)
         servo = (own & (stiffness > 0)).any(1)
         for column, values in enumerate((stiffness, damping)):
             gains[servo, column] = (matrix[servo] ** 2 * values).sum(1)
         reached = np.where(own, np.abs(matrix), 0.0)
         total = (
             np.array([sum(r * f for r, f in zip(row, limit, strict=True) if r) for row in reached])
-            if found
+            if usable_indices
             else np.full(count, np.inf)
         )
         rotor = armature + matrix**2 @ model.actuator_armature[usable]

@@ -41,16 +41,16 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
     base = robot_file.set_base(spec, base, path)
     stands = base == "floating" or robot_file.has_floor(spec)
     notes = robot_file.strip_scene(spec, path, contact=stands)
-    every = [j.name for j in spec.joints]
-    kept = robot_file.kept_joints(every, known, path.name)
+    all_joints = [j.name for j in spec.joints]
+    free_joints = robot_file.free_joints(all_joints, known, path.name)
     whole = robot_file.compiled(spec, path)
-    drives = file_drives.read_drives(whole, kept)
-    indices = [j for j in file_joints.single_joints(whole) if whole.joint(j).name in kept]
+    drives = file_drives.read_drives(whole, free_joints)
+    indices = [j for j in file_joints.single_joints(whole) if whole.joint(j).name in free_joints]
     notes += fold_into_joints(
         spec, fixed_tendons(whole, indices), [whole.joint(j).name for j in indices]
     )
     robot_file.strip_drives(spec)
-    held = robot_file.lock(spec, kept)
+    locked = robot_file.lock(spec, free_joints)
     if stands:
         robot_file.add_floor(spec)
     first = robot_file.compiled(spec, path)
@@ -98,7 +98,7 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
         default=tree.reference.copy(),
         feet=feet,
         pads=pads,
-        unlogged=held,
+        unlogged=locked,
         notes=(*notes, *drives.notes),
         imu_rotation=imu_rotation,
         imu_position=imu_position,

@@ -71,11 +71,11 @@ class Mechanism:
         Returns:
             Indices.
         """
-        found = []
+        joints = []
         while joint != BASE:
-            found.append(joint)
+            joints.append(joint)
             joint = int(self.parent[joint])
-        return found[::-1]
+        return joints[::-1]
 
     def limbs(self, joints: Iterable[int]) -> list[int]:
         """List all joints of the limbs that hold some joints: no other joint feels their motion

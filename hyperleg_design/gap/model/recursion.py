@@ -103,18 +103,18 @@ def inertial_wrench(parameters: np.ndarray) -> np.ndarray:
         Force and moment about the origin over the motion of the body's frame `(6, 15)`.
     """
     mass, first, (xx, xy, yy, xz, yz, zz) = parameters[0], parameters[1:4], parameters[4:]
-    found = np.zeros((6, 15))
-    found[:3] = _of_point(first)
-    found[:3, LINEAR] *= mass
-    found[3:, ANGULAR] = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
-    found[3:, LINEAR] = _skew(first)
+    matrix = np.zeros((6, 15))
+    matrix[:3] = _of_point(first)
+    matrix[:3, LINEAR] *= mass
+    matrix[3:, ANGULAR] = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+    matrix[3:, LINEAR] = _skew(first)
     # w x (inertia w)
-    found[3:, PRODUCTS] = [
+    matrix[3:, PRODUCTS] = [
         [0.0, yz, -yz, xz, -xy, zz - yy],
         [-xz, 0.0, xz, -yz, xx - zz, xy],
         [xy, -xy, 0.0, yy - xx, yz, -xz],
     ]
-    return found
+    return matrix
 
 
 def _of_point(place: np.ndarray) -> np.ndarray:
@@ -122,16 +122,16 @@ def _of_point(place: np.ndarray) -> np.ndarray:
     `place`, the force.
     """
     x, y, z = place
-    found = np.zeros((3, 15))
-    found[:, ANGULAR] = -_skew(place)
-    found[:, LINEAR] = np.eye(3)
+    matrix = np.zeros((3, 15))
+    matrix[:, ANGULAR] = -_skew(place)
+    matrix[:, LINEAR] = np.eye(3)
     # w x (w x place)
-    found[:, PRODUCTS] = [
+    matrix[:, PRODUCTS] = [
         [0.0, -x, -x, y, z, 0.0],
         [-y, 0.0, -y, x, 0.0, z],
         [-z, -z, 0.0, 0.0, x, y],
     ]
-    return found
+    return matrix
 
 
 def _skew(vector: np.ndarray) -> np.ndarray:

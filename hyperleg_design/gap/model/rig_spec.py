@@ -97,6 +97,6 @@ def rig_spec(subject: Subject, step: float) -> Any:
 def _quaternion(rotation: np.ndarray) -> np.ndarray:
     import mujoco
 
-    found = np.zeros(4)
-    mujoco.mju_mat2Quat(found, np.ascontiguousarray(rotation).ravel())
-    return found
+    quaternion = np.zeros(4)
+    mujoco.mju_mat2Quat(quaternion, np.ascontiguousarray(rotation).ravel())
+    return quaternion

@@ -72,8 +72,8 @@ def accelerating(
     rest = np.zeros_like(position)
     weight = inverse_dynamics(subject, position, rest, rest, rotors=rotors)
     return [
-        inverse_dynamics(subject, position, rest, rest + one, rotors=rotors) - weight
-        for one in accelerations
+        inverse_dynamics(subject, position, rest, rest + acceleration, rotors=rotors) - weight
+        for acceleration in accelerations
     ]
 
 

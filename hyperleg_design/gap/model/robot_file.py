@@ -217,11 +217,11 @@ def strip_drives(spec: Any) -> None:
             spec.delete(item)
 
 
-def kept_joints(every: Sequence[str], known: Collection[str] | None, where: str) -> list[str]:
+def free_joints(joints: Sequence[str], known: Collection[str] | None, where: str) -> list[str]:
     """Choose the joints of a robot that stay free.
 
     Args:
-        every: names of all its joints.
+        joints: names of all its joints.
         known: joints that logs know; None for all.
         where: name of the robot, for the error.
 
@@ -231,19 +231,19 @@ def kept_joints(every: Sequence[str], known: Collection[str] | None, where: str)
     Raises:
         InputError: logs know none of them.
     """
-    kept = [name for name in every if known is None or name in known]
-    if known is not None and not kept:
-        remedy = f"are joints of another robot; its own are {', '.join(every)}"
+    free = [name for name in joints if known is None or name in known]
+    if known is not None and not free:
+        remedy = f"are joints of another robot; its own are {', '.join(joints)}"
         raise InputError(where, "joints", sorted(known)[:8], remedy)
-    return kept
+    return free
 
 
-def lock(spec: Any, kept: Collection[str]) -> tuple[str, ...]:
+def lock(spec: Any, free: Collection[str]) -> tuple[str, ...]:
     """Weld joints that no log knows, at the position in which the file draws them.
 
     Args:
         spec: the specification, which is changed.
-        kept: names of the joints that stay free.
+        free: names of the joints that stay free.
 
     Returns:
         Names of the welded joints.
@@ -254,7 +254,7 @@ def lock(spec: Any, kept: Collection[str]) -> tuple[str, ...]:
     for joint in list(spec.joints):
         if (
             joint.type in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE)
-            and joint.name not in kept
+            and joint.name not in free
         ):
             locked.append(joint.name)
             spec.delete(joint)

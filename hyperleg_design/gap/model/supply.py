@@ -70,8 +70,8 @@ class _Follows(Live):
 
     def begin(self, tick: Tick) -> None:
         if tick.battery is not None:
-            found = tick.battery[:, None] / self.alteration.supply
-            self.ratio = np.where(np.isfinite(found), found, 1.0)
+            ratio = tick.battery[:, None] / self.alteration.supply
+            self.ratio = np.where(np.isfinite(ratio), ratio, 1.0)
 
     def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
         damper = -applied(self.machine.motor_from_joint, self.machine.damping * tick.velocity)

@@ -69,7 +69,7 @@ def fixed_tendons(model: Any, joints: Sequence[int]) -> list[Tendon]:
     import mujoco
 
     place = {int(joint): row for row, joint in enumerate(joints)}
-    found = []
+    tendons = []
     for index in range(model.ntendon):
         wraps = slice(model.tendon_adr[index], model.tendon_adr[index] + model.tendon_num[index])
         if model.wrap_type[wraps.start] != mujoco.mjtWrap.mjWRAP_JOINT:
@@ -83,7 +83,7 @@ def fixed_tendons(model: Any, joints: Sequence[int]) -> list[Tendon]:
         if not coefficients.any():
             continue
         low, high = (float(value) - beside for value in model.tendon_lengthspring[index])
-        found.append(
+        tendons.append(
             Tendon(
                 index,
                 model.tendon(index).name or f"tendon_{index}",
@@ -95,7 +95,7 @@ def fixed_tendons(model: Any, joints: Sequence[int]) -> list[Tendon]:
                 (low, high),
             )
         )
-    return found
+    return tendons
 
 
 def fold_into_joints(spec: Any, tendons: Sequence[Tendon], joints: Sequence[str]) -> list[str]:

@@ -120,10 +120,10 @@ def _squares(signals: Sequence[Signals], overlay: Overlay, keeps_targets: bool) 
     NaN where a simulation diverged.
     """
     squares = []
-    for one in signals:
-        changes: Sequence[Any] = [(), overlay.alterations(one.subject)]
-        made = replay(one, changes, short_windows(one), keeps_targets=keeps_targets)
-        position, _ = made.errors(one)
+    for run in signals:
+        changes: Sequence[Any] = [(), overlay.alterations(run.subject)]
+        replays = replay(run, changes, short_windows(run), keeps_targets=keeps_targets)
+        position, _ = replays.errors(run)
         squares.append(np.nanmean(position**2, axis=2))
     return np.concatenate(squares, 1)
 
@@ -157,8 +157,8 @@ def walked(
             continue
         first, second = before.values(name), after.values(name)
         both = np.isfinite(first) & np.isfinite(second)
-        one = statistics.estimate([second[both] - first[both]]) if both.sum() > 1 else None
-        interval = (one.mean, one.low, one.high) if one else (float("nan"),) * 3
+        estimate = statistics.estimate([second[both] - first[both]]) if both.sum() > 1 else None
+        interval = (estimate.mean, estimate.low, estimate.high) if estimate else (float("nan"),) * 3
         means = _mean(first), _mean(second)
         changes.append(Changed(name, measure_of(name).unit, *means, *interval, int(both.sum())))
     return changes
@@ -178,5 +178,5 @@ def mapping(logs: Sequence[Replayed], walk: Sequence[Changed]) -> dict[str, Any]
     Returns:
         Nested mappings.
     """
-    rows = {"replayed": [asdict(one) for one in logs], "walked": [asdict(one) for one in walk]}
+    rows = {"replayed": [asdict(log) for log in logs], "walked": [asdict(row) for row in walk]}
     return dict(plain(rows))

@@ -50,12 +50,14 @@ class Evidence:
 
     @property
     def worst(self) -> int:
-        """Row of which causes explain most; where they explain nothing, the one with the largest
-        residual.
+        """Index of the row of which causes explain most; where they explain nothing, of the row
+        with the largest residual.
         """
-        made = np.nan_to_num(root_mean_square(self.explained))
+        sizes = np.nan_to_num(root_mean_square(self.explained))
         return (
-            int(np.argmax(made)) if made.any() else int(np.nanargmax(root_mean_square(self.before)))
+            int(np.argmax(sizes))
+            if sizes.any()
+            else int(np.nanargmax(root_mean_square(self.before)))
         )
 
 
@@ -83,7 +85,7 @@ def evidence(
     if residual_name == "motion":
         known = moving_ticks(signals, known, sticking(signals))
     before = low_passed(np.where(known, residual, 0.0).T, signals.step, BAND).T
-    made = low_passed(np.where(known, explained, 0.0).T, signals.step, BAND).T
+    explained_in_band = low_passed(np.where(known, explained, 0.0).T, signals.step, BAND).T
     speed = np.full(residual.shape, np.nan)
     if residual_name == "motion":
         speed = signals.velocity
@@ -98,7 +100,7 @@ def evidence(
         rows=names,
         time=signals.time,
         before=before + empty,
-        explained=made + empty,
+        explained=explained_in_band + empty,
         speed=speed,
         units=row_units(subject, residual_name),
         speed_units=tuple(unit_at(subject, kind, row, "rad/s") for row in names),
@@ -108,15 +110,20 @@ def evidence(
 def _explained(
     signals: Signals, causes: Sequence[Mapping[str, Any]], residual_name: str
 ) -> np.ndarray:
-    """What causes leave in a residual, together `(t, r)`."""
+    """Sum of the traces of causes in one residual `(t, r)`."""
     explained = np.zeros_like(signals.residual[residual_name])
     for cause in causes:
-        kind = effect(str(cause["effect"]))
-        told = cause["parameters"]
+        cause_effect = effect(str(cause["effect"]))
+        parameters = cause["parameters"]
         values = np.array(
-            [[float(told[p.name]["value"]) if p.name in told else p.null for p in kind.parameters]]
+            [
+                [
+                    float(parameters[p.name]["value"]) if p.name in parameters else p.null
+                    for p in cause_effect.parameters
+                ]
+            ]
         )
-        trace = kind.trace(signals, str(cause["location"]), values).get(residual_name)
+        trace = cause_effect.trace(signals, str(cause["location"]), values).get(residual_name)
         if trace is not None:
             explained = explained + trace[0]
     return explained

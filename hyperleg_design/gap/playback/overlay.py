@@ -98,12 +98,14 @@ def alterations(change: Change, subject: Subject) -> tuple[Alteration, ...]:
     Raises:
         InputError: no such effect, or no such place on this robot.
     """
-    found = []
+    added = []
     for (identifier, location), values in change.items():
-        one = effect(identifier)
-        numbers = np.array([values.get(p.name, p.null) for p in one.parameters], float)
-        found.append(one.alteration(one.place(location, subject), numbers, subject))
-    return tuple(found)
+        changed_effect = effect(identifier)
+        numbers = np.array([values.get(p.name, p.null) for p in changed_effect.parameters], float)
+        added.append(
+            changed_effect.alteration(changed_effect.place(location, subject), numbers, subject)
+        )
+    return tuple(added)
 
 
 def read_overlay(path: str | Path) -> Overlay:
@@ -194,8 +196,8 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
     path = path / "diagnosis.json" if path.is_dir() else path
     where = short_name(path)
     content = read_json(path)
-    told = content if isinstance(content, dict) else {}
-    if told.get("schema") != 1 or not isinstance(told.get("causes"), list):
+    diagnosis = content if isinstance(content, dict) else {}
+    if diagnosis.get("schema") != 1 or not isinstance(diagnosis.get("causes"), list):
         remedy = "is not a diagnosis: expects schema 1 and a list of causes"
         raise InputError(where, "", None, remedy)
     verdict = content.get("verdict")
@@ -205,7 +207,7 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
     for number, cause in enumerate(content["causes"]):
         try:
             key = cause["effect"], cause["location"]
-            # the rest is told for people: a limit for its inverse
+            # the others are for readers, such as a limit beside its inverse
             own = {p.name for p in effect(str(key[0])).parameters}
             values = {
                 name: value["value"] for name, value in cause["parameters"].items() if name in own
@@ -233,13 +235,13 @@ def _only(content: Mapping[str, Any], known: tuple[str, ...], where: str, place:
 
 
 def _checked(where: str, place: str, identifier: Any, values: Any) -> dict[str, float]:
-    """Values of one effect's parameters, each a number that can be."""
-    one = effect(str(identifier))
+    """Values of one effect's parameters, after each was checked against its bounds."""
+    changed_effect = effect(str(identifier))
     if not isinstance(values, Mapping):
         raise InputError(where, f"{place}.parameters", values, "expects a mapping of numbers")
-    known = {p.name: p for p in one.parameters}
+    known = {p.name: p for p in changed_effect.parameters}
     _only(values, tuple(known), where, f"{place}.parameters")
-    found = {}
+    checked = {}
     for name, value in values.items():
         at = f"{place}.parameters.{name}"
         if (
@@ -248,5 +250,5 @@ def _checked(where: str, place: str, identifier: Any, values: Any) -> dict[str, 
             or not math.isfinite(value)
         ):
             raise InputError(where, at, value, "expects a finite number")
-        found[name] = known[name].checked(float(value), where, at)
-    return found
+        checked[name] = known[name].checked(float(value), where, at)
+    return checked

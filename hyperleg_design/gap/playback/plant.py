@@ -129,9 +129,9 @@ class Plant:
             base_velocity: linear in the world, angular in the base's frame, `(w, 6)`; None for a
                 fixed one.
         """
-        told, told_velocity = self.chain.measured(position, velocity)
-        self.qpos[:, self.joints] = 2 * position - told
-        self.qvel[:, self._first :] = 2 * velocity - told_velocity
+        measured, measured_velocity = self.chain.measured(position, velocity)
+        self.qpos[:, self.joints] = 2 * position - measured
+        self.qvel[:, self._first :] = 2 * velocity - measured_velocity
         if base is not None and base_velocity is not None:
             self.qpos[:, :7], self.qvel[:, :6] = base, base_velocity
         self.chain.reset(

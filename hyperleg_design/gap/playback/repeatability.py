@@ -60,22 +60,24 @@ def _pooled_floors(
 def _repeats(
     signals: Sequence[Signals], sheets: Sequence[dict[tuple[str, str], Sheet]]
 ) -> dict[tuple[str, str, str], np.ndarray]:
-    """Half of the variance between logs that follow the same targets from their first tick on."""
+    """Root of half of the mean square difference between logs that follow the same targets from
+    their first tick on, by signal, kind of place and regime.
+    """
     differences: dict[tuple[str, str, str], list[np.ndarray]] = {}
-    for i, one in enumerate(signals):
+    for i, first in enumerate(signals):
         for j in range(i + 1, len(signals)):
-            other = signals[j]
-            length = min(len(one.time), len(other.time))
+            second = signals[j]
+            length = min(len(first.time), len(second.time))
             if (
-                one.target is None
-                or other.target is None
-                or not np.isclose(one.step, other.step, rtol=0.01)
-                or one.target.shape[1] != other.target.shape[1]
+                first.target is None
+                or second.target is None
+                or not np.isclose(first.step, second.step, rtol=0.01)
+                or first.target.shape[1] != second.target.shape[1]
             ):
                 continue
-            if length < 0.8 * max(len(one.time), len(other.time)):
+            if length < 0.8 * max(len(first.time), len(second.time)):
                 continue
-            apart = one.target[:length] - other.target[:length]
+            apart = first.target[:length] - second.target[:length]
             if not np.sqrt(np.nanmean(apart**2)) < SAME_TARGET:
                 continue
             for key in sheets[i].keys() & sheets[j].keys():
@@ -87,4 +89,4 @@ def _repeats(
                     differences.setdefault((*key, regime), []).append(
                         np.where(inside[:length], difference, np.nan)
                     )
-    return {key: root_mean_square(np.concatenate(found)) for key, found in differences.items()}
+    return {key: root_mean_square(np.concatenate(parts)) for key, parts in differences.items()}

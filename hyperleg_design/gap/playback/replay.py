@@ -144,13 +144,13 @@ def _inputs(signals: Signals, follow: str) -> np.ndarray:
         "command": signals.command,
         "torque": signals.believed,
     }
-    found = known[follow]
-    if found is None:
+    followed = known[follow]
+    if followed is None:
         raise InputError(
             signals.log.name, follow, None, f"is not in this log; it has {best_input(signals)}"
         )
-    at_rest = signals.subject.default if follow == "target" else np.zeros(found.shape[1])
-    return held(found, at_rest)
+    at_rest = signals.subject.default if follow == "target" else np.zeros(followed.shape[1])
+    return held(followed, at_rest)
 
 
 def _run(
@@ -159,7 +159,7 @@ def _run(
     windows: Windows,
     follow: str,
     inputs: np.ndarray,
-    kept: bool,
+    hold_inputs: bool,
     substeps: int,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     subject, ticks = signals.subject, windows.ticks
@@ -187,7 +187,7 @@ def _run(
         temperature = None if signals.temperature is None else signals.temperature[now]
         for sub in range(substeps):
             part = sub / substeps
-            value = inputs[now] if kept else (1 - part) * inputs[now] + part * inputs[after]
+            value = inputs[now] if hold_inputs else (1 - part) * inputs[now] + part * inputs[after]
             driven = plant.step(follow, value, temperature, battery)
             if sub == 0:
                 torque[:, k] = driven.believed

@@ -23,8 +23,8 @@ BANDS = ((0.0, 1.0), (1.0, 3.0), (3.0, 10.0), (10.0, 25.0))
 WINDOW = 0.25
 """Length of the predictions that give gaps of position and velocity [s]."""
 TORQUE_SIGNALS = {
-    residual_name: ("torque" if residual_name == "motion" else residual_name, *told)
-    for residual_name, told in RESIDUALS.items()
+    residual_name: ("torque" if residual_name == "motion" else residual_name, kind, unit)
+    for residual_name, (kind, unit) in RESIDUALS.items()
 }
 """Name, kind of place and unit of what each residual shows."""
 
@@ -68,25 +68,27 @@ def sheets_of(signals: Signals, predict: bool) -> dict[tuple[str, str], Sheet]:
         "control": signals.command,
         "transmission": signals.velocity @ subject.joint_from_motor,
     }
-    made: list[Sheet] = []
+    sheets: list[Sheet] = []
     for residual_name, (signal, kind, unit) in TORQUE_SIGNALS.items():
         if residual_name not in signals.residual:
             continue
         residual = np.where(signals.valid[:, None], signals.residual[residual_name], np.nan)
         names = row_names(subject, residual_name)
-        made.append(_sheet(signals, signal, kind, unit, names, residual, loads.get(residual_name)))
+        sheets.append(
+            _sheet(signals, signal, kind, unit, names, residual, loads.get(residual_name))
+        )
         if residual_name == "motion" and not subject.one_to_one:
             at_motors = applied(subject.motor_from_joint, residual)
-            made.append(
+            sheets.append(
                 _sheet(signals, signal, "motor", unit, subject.motors, at_motors, signals.believed)
             )
     if predict and signals.valid.any():
-        made += _predictions(signals)
-    return {(s.signal, s.kind): s for s in made}
+        sheets += _predictions(signals)
+    return {(s.signal, s.kind): s for s in sheets}
 
 
 def _predictions(signals: Signals) -> list[Sheet]:
-    """Errors of short predictions, put back on the ticks that they belong to."""
+    """Sheets of the errors of short replays, put back on the ticks that the errors belong to."""
     subject = signals.subject
     try:
         windows = short_windows(signals, WINDOW)
@@ -96,21 +98,21 @@ def _predictions(signals: Signals) -> list[Sheet]:
     if follow == "torque" and not np.isfinite(signals.believed[signals.valid]).all():
         return []
     predictions = replay(signals, windows=windows, follow=follow).errors(signals)
-    made, ticks = [], windows.ticks[:, :-1]
-    for signal, unit, errors, own in (
+    sheets, ticks = [], windows.ticks[:, :-1]
+    for signal, unit, errors, measured in (
         ("position", "rad", predictions[0][0], signals.position),
         ("velocity", "rad/s", predictions[1][0], signals.velocity),
     ):
-        values = np.full(own.shape, np.nan)
+        values = np.full(measured.shape, np.nan)
         values[ticks] = errors[:, :-1]
         # what an unknown ground pushes is no gap
         values[~np.isfinite(signals.residual["motion"])] = np.nan
-        made.append(_sheet(signals, signal, "joint", unit, subject.joints, values, own))
+        sheets.append(_sheet(signals, signal, "joint", unit, subject.joints, values, measured))
         if not subject.one_to_one:
             matrix = np.asarray(subject.joint_from_motor)
-            values, own = applied(matrix.T, values), own @ matrix
-            made.append(_sheet(signals, signal, "motor", unit, subject.motors, values, own))
-    return made
+            values, measured = applied(matrix.T, values), measured @ matrix
+            sheets.append(_sheet(signals, signal, "motor", unit, subject.motors, values, measured))
+    return sheets
 
 
 def _sheet(
@@ -122,7 +124,9 @@ def _sheet(
     residual: np.ndarray,
     own: np.ndarray | None,
 ) -> Sheet:
-    """Sheet of a residual; `own` is the signal itself, whose size tells what the residual means."""
+    """Make the sheet of a residual; `own` is the signal itself, with whose size the residual is
+    compared.
+    """
     predicted = signal in ("position", "velocity")
     units = tuple(unit_at(signals.subject, kind, name, unit) for name in names)
     regimes = regimes_of(signals, kind, names, None if predicted else own)
@@ -133,7 +137,7 @@ def _sheet(
         floor = _smoothing_error(signals, signal, kind)
         return Sheet(signal, kind, units, names, residual, floor, size, regimes, {})
     spectrum, frequency, weight = _spectrum(residual, signals.step)
-    kept = _band(spectrum, frequency, 0.0, BAND, residual)
+    in_band = _band(spectrum, frequency, 0.0, BAND, residual)
     high = frequency > BAND
     with np.errstate(invalid="ignore", divide="ignore"):
         density = np.mean(np.abs(spectrum[high]) ** 2, 0) if high.any() else np.zeros(len(names))
@@ -143,7 +147,7 @@ def _sheet(
         for low, top in BANDS
         if low < 0.5 / signals.step
     }
-    return Sheet(signal, kind, units, names, kept, np.nan_to_num(floor), size, regimes, bands)
+    return Sheet(signal, kind, units, names, in_band, np.nan_to_num(floor), size, regimes, bands)
 
 
 def _smoothing_error(signals: Signals, signal: str, kind: str) -> np.ndarray:

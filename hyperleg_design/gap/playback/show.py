@@ -95,12 +95,12 @@ def effects_table() -> list[dict[str, Any]]:
     """
     return [
         {
-            "effect": one.identifier,
-            "where": one.kind,
-            "summary": one.summary,
-            "parameters": [dataclasses.asdict(p) for p in one.parameters],
+            "effect": effect.identifier,
+            "where": effect.kind,
+            "summary": effect.summary,
+            "parameters": [dataclasses.asdict(p) for p in effect.parameters],
         }
-        for one in EFFECTS.values()
+        for effect in EFFECTS.values()
     ]
 
 
@@ -126,32 +126,36 @@ def show(
     Raises:
         InputError: no such effect, place or parameter, or a robot on which it cannot sit.
     """
-    one = effect(identifier)
-    standing = one.kind in ("foot", "sensor")
+    shown_effect = effect(identifier)
+    standing = shown_effect.kind in ("foot", "sensor")
     subject = _subject(robot, standing)
-    places = one.locations(subject)
+    places = shown_effect.locations(subject)
     if location is None:
         if not places:
-            remedy = f"has no {one.kind} for it; choose another --robot"
+            remedy = f"has no {shown_effect.kind} for it; choose another --robot"
             raise InputError(identifier, "robot", subject.name, remedy)
-        location = places[-1] if one.kind == "link" and not standing else places[0]
-    location = one.place(location, subject)
-    values = _values(one, location, subject, settings)
+        location = places[-1] if shown_effect.kind == "link" and not standing else places[0]
+    location = shown_effect.place(location, subject)
+    values = _values(shown_effect, location, subject, settings)
     joint = _joint(subject, location)
     time = np.arange(round((STANDING if standing else DURATION) / TICK) + 1) * TICK
     target = _stand_targets(subject, time) if standing else _chirp(subject, joint, time)
     before, _ = simulated_log(subject, target, time, ())
-    after, log = simulated_log(subject, target, time, (one.alteration(location, values, subject),))
-    signals = condition(_told(one, log, values), subject)
+    after, log = simulated_log(
+        subject, target, time, (shown_effect.alteration(location, values, subject),)
+    )
+    signals = condition(_with_sensor_bias(shown_effect, log, values), subject)
     residual_name, row, unit, trace, residual = _largest(
-        one.trace(signals, location, values[None]), signals
+        shown_effect.trace(signals, location, values[None]), signals
     )
     return Shown(
-        effect=one,
+        effect=shown_effect,
         robot=subject.name,
         location=location,
         values=values,
-        units=tuple(unit_at(subject, one.kind, location, p.unit) for p in one.parameters),
+        units=tuple(
+            unit_at(subject, shown_effect.kind, location, p.unit) for p in shown_effect.parameters
+        ),
         time=signals.time,
         residual_name=residual_name,
         row=row,
@@ -182,9 +186,9 @@ def _subject(robot: str | None, standing: bool) -> Subject:
     return load_subject(name, [Log("standard motion", np.array([0.0, 1.0]), joints, metadata)])
 
 
-def _values(one: Effect, location: str, subject: Subject, settings: Sequence[str]) -> np.ndarray:
-    values = one.example(location, subject)
-    known = {p.name: i for i, p in enumerate(one.parameters)}
+def _values(effect: Effect, location: str, subject: Subject, settings: Sequence[str]) -> np.ndarray:
+    values = effect.example(location, subject)
+    known = {p.name: i for i, p in enumerate(effect.parameters)}
     for setting in settings:
         name, sign, text = setting.partition("=")
         if not sign or name not in known:
@@ -194,7 +198,7 @@ def _values(one: Effect, location: str, subject: Subject, settings: Sequence[str
             value = float(text)
         except ValueError:
             raise InputError("set", name, text, "expects a number") from None
-        values[known[name]] = one.parameters[known[name]].checked(value, "set", name)
+        values[known[name]] = effect.parameters[known[name]].checked(value, "set", name)
     return values
 
 
@@ -243,11 +247,11 @@ def _stand_targets(subject: Subject, time: np.ndarray) -> np.ndarray:
     return target
 
 
-def _told(one: Effect, log: Log, values: np.ndarray) -> Log:
-    """The log as the robot's own inertial sensor would have told it."""
-    if one.kind != "sensor":
+def _with_sensor_bias(effect: Effect, log: Log, values: np.ndarray) -> Log:
+    """The log as the robot's own inertial sensor would have measured it, with its bias."""
+    if effect.kind != "sensor":
         return log
-    columns = (parameter.name.replace("_", "/") for parameter in one.parameters)
+    columns = (parameter.name.replace("_", "/") for parameter in effect.parameters)
     bias = dict(zip(columns, values, strict=True))
     signals = {name: column + bias.get(name, 0.0) for name, column in log.signals.items()}
     return dataclasses.replace(log, signals=signals)

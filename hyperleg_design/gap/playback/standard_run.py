@@ -81,27 +81,27 @@ def simulated_log(
                 rows["velocity"][-1] = (rows["velocity"][-1] + plant.measured()[1][0]) / 2
                 rows["base_velocity"][-1] = (rows["base_velocity"][-1] + plant.qvel[0, :6]) / 2
                 rows["torque"].append(driven.believed[0].copy())
-    found = {name: np.array(values) for name, values in rows.items() if values}
-    return found["position"], _log(subject, target, time, found)
+    recorded = {name: np.array(values) for name, values in rows.items() if values}
+    return recorded["position"], _log(subject, target, time, recorded)
 
 
 def _balance(subject: Subject, pose: np.ndarray, moving: np.ndarray) -> np.ndarray:
-    """Added to the targets so that the biped stays on its feet `(n,)` [rad]; pose `(7,)` and
+    """Correction of the targets by which the biped stays on its feet `(n,)` [rad]; pose `(7,)` and
     velocity `(6,)` as MuJoCo has them.
     """
     w, x, y, z = pose[3:]
     sideways = LATERAL[0] * pose[1] + LATERAL[1] * moving[1]
     pitch = BALANCE[0] * 2 * (w * y - z * x) + BALANCE[1] * moving[4]
-    found = np.zeros(len(subject.joints))
+    correction = np.zeros(len(subject.joints))
     for place, joint in enumerate(subject.joints):
         side = 1.0 if joint.startswith("left") else -1.0
         if joint.endswith("ankle_pitch"):
-            found[place] = pitch
+            correction[place] = pitch
         elif joint.endswith("hip_roll"):
-            found[place] = side * sideways
+            correction[place] = side * sideways
         elif joint.endswith("ankle_roll"):
-            found[place] = -side * sideways
-    return found
+            correction[place] = -side * sideways
+    return correction
 
 
 def _lift(model: Any, subject: Subject, position: np.ndarray) -> float:
@@ -144,19 +144,19 @@ def _pad_forces(plant: Plant, model: Any, data: Any, subject: Subject) -> np.nda
 
 
 def _log(
-    subject: Subject, target: np.ndarray, time: np.ndarray, found: dict[str, np.ndarray]
+    subject: Subject, target: np.ndarray, time: np.ndarray, recorded: dict[str, np.ndarray]
 ) -> Log:
     columns: dict[str, np.ndarray] = {}
     for place, joint in enumerate(subject.joints):
-        columns[f"position/{joint}"] = found["position"][:, place]
-        columns[f"velocity/{joint}"] = found["velocity"][:, place]
+        columns[f"position/{joint}"] = recorded["position"][:, place]
+        columns[f"velocity/{joint}"] = recorded["velocity"][:, place]
         columns[f"position_target/{joint}"] = target[:, place]
     warmth, columns["battery_voltage"] = _conditions(subject, time)
     for place, motor in enumerate(subject.motors):
-        columns[f"motor_torque/{motor}"] = found["torque"][:, place]
+        columns[f"motor_torque/{motor}"] = recorded["torque"][:, place]
         columns[f"motor_temperature/{motor}"] = warmth[:, place]
     if subject.floating:
-        columns |= _base_columns(subject, time, found)
+        columns |= _base_columns(subject, time, recorded)
     gains, notes = subject.known_gains, "standard motion, simulated"
     metadata = Metadata(robot=subject.path, base=subject.base, gains=gains, notes=notes)
     return Log("standard motion", time, columns, metadata)
@@ -172,9 +172,9 @@ def _conditions(subject: Subject, time: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 def _base_columns(
-    subject: Subject, time: np.ndarray, found: dict[str, np.ndarray]
+    subject: Subject, time: np.ndarray, recorded: dict[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
-    pose, moving = found["pose"], found["base_velocity"]
+    pose, moving = recorded["pose"], recorded["base_velocity"]
     rotation = quaternion_rotation(pose[:, 3:7])
     acceleration = np.gradient(moving[:, :3], time, axis=0) - subject.gravity
     into = np.einsum("tij,jk->tik", rotation, subject.imu_rotation)
@@ -187,7 +187,7 @@ def _base_columns(
     columns = columns_of(vectors, "xyz") | columns_of({"base_orientation": pose[:, 3:7]}, "wxyz")
     for index, pad in enumerate(subject.pads):
         columns |= {
-            f"contact_force/{pad.name}_{axis}": found["force"][:, 3 * index + i]
+            f"contact_force/{pad.name}_{axis}": recorded["force"][:, 3 * index + i]
             for i, axis in enumerate("xyz")
         }
     return columns

@@ -96,19 +96,26 @@ class Place:
     """Of the squared excess; in a regime, of that of its place."""
 
 
-def residual_shape(shape: str, location: str, says: str, closed_beyond: float) -> dict[str, Any]:
+def residual_shape(
+    shape: str, location: str, description: str, closed_beyond: float
+) -> dict[str, Any]:
     """Make one of the shapes that a diagnosis lists.
 
     Args:
         shape: its name.
         location: joint, motor, foot or sensor.
-        says: what was seen, in a sentence that goes on from the location.
+        description: what was seen, in a sentence that goes on from the location.
         closed_beyond: share of the gap beyond all causes that it explains.
 
     Returns:
         Its fields.
     """
-    entry = {"shape": shape, "location": location, "says": says, "closed_beyond": closed_beyond}
+    entry = {
+        "shape": shape,
+        "location": location,
+        "says": description,
+        "closed_beyond": closed_beyond,
+    }
     return entry | {"gain": 0.0}
 
 
@@ -185,10 +192,10 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
     path = Path(path)
     where = short_name(path)
     content = read_json(path)
-    found = content.get("schema") if isinstance(content, dict) else None
-    if found != SCHEMA:
+    schema = content.get("schema") if isinstance(content, dict) else None
+    if schema != SCHEMA:
         remedy = f"expects {SCHEMA}: this is no diagnosis, or one of another version"
-        raise InputError(where, "schema", found, remedy)
+        raise InputError(where, "schema", schema, remedy)
     if (verdict := content.get("verdict")) not in VERDICTS:
         raise InputError(where, "verdict", verdict, f"expects one of {', '.join(VERDICTS)}")
     try:
@@ -202,7 +209,7 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
         values["where"] = tuple(Place(**place) for place in content["where"])
         values["causes"], values["rivals"] = _named(content["causes"]), _named(content["rivals"])
         values["equivalent"] = tuple(
-            tuple((one["effect"], one["location"]) for one in group)
+            tuple((cause["effect"], cause["location"]) for cause in group)
             for group in content["equivalent"]
         )
         return Diagnosis(**values)
@@ -213,8 +220,8 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
 
 def _named(entries: Sequence[Mapping[str, Any]]) -> tuple[Named, ...]:
     return tuple(
-        Named(**{**one, "parameters": {n: Value(**v) for n, v in one["parameters"].items()}})
-        for one in entries
+        Named(**{**entry, "parameters": {n: Value(**v) for n, v in entry["parameters"].items()}})
+        for entry in entries
     )
 
 

@@ -150,8 +150,8 @@ def orientation(log: Log, quaternion: np.ndarray, ticks: np.ndarray) -> Smooth:
     Raises:
         InputError: quaternions that are not of unit length.
     """
-    told = np.isfinite(quaternion).all(1)
-    q = quaternion[told]
+    logged = np.isfinite(quaternion).all(1)
+    q = quaternion[logged]
     length = np.linalg.norm(q, axis=1)
     if not np.all(np.abs(length - 1) < 0.1):
         remedy = "is no unit quaternion: expects w, x, y, z"
@@ -159,7 +159,7 @@ def orientation(log: Log, quaternion: np.ndarray, ticks: np.ndarray) -> Smooth:
             log.name, "base_orientation", float(length[np.argmax(np.abs(length - 1))]), remedy
         )
     flips = np.concatenate([[1.0], np.where(np.sum(q[1:] * q[:-1], 1) < 0, -1.0, 1.0)])
-    return smooth(log.time[told], q * np.cumprod(flips)[:, None] / length[:, None], ticks)
+    return smooth(log.time[logged], q * np.cumprod(flips)[:, None] / length[:, None], ticks)
 
 
 def spin(turning: Smooth) -> tuple[np.ndarray, np.ndarray]:
@@ -212,11 +212,11 @@ def _integrated(
     return out
 
 
-def _turn_onto(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Shortest rotation that takes one unit vector to another."""
+def _turn_onto(source: np.ndarray, target: np.ndarray) -> np.ndarray:
+    """Shortest rotation that takes the unit vector `source` to the unit vector `target`."""
     from scipy.spatial.transform import Rotation
 
-    axis, cosine = np.cross(one, other), float(one @ other)
+    axis, cosine = np.cross(source, target), float(source @ target)
     sine = float(np.linalg.norm(axis))
     if sine < 1e-9:
         return np.eye(3) if cosine > 0 else np.diag([1.0, -1.0, -1.0])

@@ -77,19 +77,19 @@ def resampled(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.nda
     Returns:
         `(t, k)`; NaN where a channel is unknown for more than `GAP` of its own steps.
     """
-    out = np.full((len(ticks), values.shape[1]), np.nan)
+    on_ticks = np.full((len(ticks), values.shape[1]), np.nan)
     for column in range(values.shape[1]):
         known = np.isfinite(values[:, column])
         if known.sum() < 2:
             continue
         at = time[known]
-        found = np.interp(ticks, at, values[known, column])
+        interpolated = np.interp(ticks, at, values[known, column])
         reach = GAP * float(np.median(np.diff(at)))
         after = np.clip(np.searchsorted(at, ticks), 0, len(at) - 1)
         before = np.clip(after - 1, 0, len(at) - 1)
         near = np.minimum(np.abs(at[after] - ticks), np.abs(ticks - at[before]))
-        out[:, column] = np.where(near <= reach / 2, found, np.nan)
-    return out
+        on_ticks[:, column] = np.where(near <= reach / 2, interpolated, np.nan)
+    return on_ticks
 
 
 def resampled_or_none(time: np.ndarray, values: np.ndarray, ticks: np.ndarray) -> np.ndarray | None:

@@ -317,19 +317,19 @@ def _driven(subject: Subject) -> np.ndarray:
 
 
 def _measured(log: Log, subject: Subject, ticks: np.ndarray) -> np.ndarray | None:
-    """Motor torque, else current times constant, else what joint torques tell; None where nothing
-    was measured.
+    """Measured torque of the motors `(t, m)` [Nm]: logged, else current times torque constant, else
+    computed from logged joint torques; None where nothing was measured.
     """
     torque = of_motors(log, "motor_torque", subject)
     current = of_motors(log, "motor_current", subject) * subject.torque_constant
     torque = np.where(np.isfinite(torque), torque, current)
     from_joints = applied(subject.motor_from_joint, log.stack("joint_torque", subject.joints))
-    found = resampled(log.time, np.where(np.isfinite(torque), torque, from_joints), ticks)
-    if not np.isfinite(found).any():
+    measured = resampled(log.time, np.where(np.isfinite(torque), torque, from_joints), ticks)
+    if not np.isfinite(measured).any():
         return None
     if subject.one_to_one:
-        found[:, subject.passive] = 0.0
-    return found
+        measured[:, subject.passive] = 0.0
+    return measured
 
 
 def _believed(
@@ -358,8 +358,8 @@ def _believed(
 
 
 def _voltage(log: Log, ticks: np.ndarray) -> np.ndarray | None:
-    found = resampled_or_none(log.time, log.column("battery_voltage")[:, None], ticks)
-    return None if found is None else found[:, 0]
+    voltage = resampled_or_none(log.time, log.column("battery_voltage")[:, None], ticks)
+    return None if voltage is None else voltage[:, 0]
 
 
 def _edge(motion: Smooth, lacking: np.ndarray) -> float:

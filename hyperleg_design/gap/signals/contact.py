@@ -93,10 +93,10 @@ def contacts(
         )
 
     on_pads, on_feet = force(pad_names), force(feet)
-    untold = _untold_feet(subject, log.feet)
-    if untold and base is not None:
-        near = _may_touch(subject, position, base)[:, untold, None]
-        on_feet[:, untold] = np.where(near, np.nan, 0.0)
+    unlogged = _feet_without_force(subject, log.feet)
+    if unlogged and base is not None:
+        near = _may_touch(subject, position, base)[:, unlogged, None]
+        on_feet[:, unlogged] = np.where(near, np.nan, 0.0)
     total = np.stack(
         [np.where(subject.pad_foot[:, None] == f, on_pads, 0.0).sum(1) for f in range(len(feet))], 1
     )
@@ -141,19 +141,20 @@ def unknown_rows(subject: Subject, ground: Ground, margin: int) -> np.ndarray:
 
 
 def _foot_chain(subject: Subject, foot: int) -> list[int]:
-    found: set[int] = set()
+    joints: set[int] = set()
     for pad in subject.pads:
         if pad.foot == foot:
-            found |= set(subject.tree.chain(int(subject.tree.link_joint[pad.link])))
-    return sorted(found)
+            joints |= set(subject.tree.chain(int(subject.tree.link_joint[pad.link])))
+    return sorted(joints)
 
 
-def _untold_feet(subject: Subject, told: Collection[str]) -> list[int]:
-    """Feet of which neither the force nor that of a pad is logged."""
+def _feet_without_force(subject: Subject, logged: Collection[str]) -> list[int]:
+    """Indices of the feet for which a log holds neither a force of their own nor one of a pad."""
     return [
         index
         for index, foot in enumerate(subject.feet)
-        if foot not in told and not any(p.foot == index and p.name in told for p in subject.pads)
+        if foot not in logged
+        and not any(p.foot == index and p.name in logged for p in subject.pads)
     ]
 
 

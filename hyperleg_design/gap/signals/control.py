@@ -24,8 +24,8 @@ HELD = 1e-3
 def control_residual(
     subject: Subject, logged: np.ndarray, spring: np.ndarray, damper: np.ndarray
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Logged command minus the one that the declared gains make `(s, m)` [Nm], NaN where nothing is
-    said, as where a command is held at the motor's limit.
+    """Logged command minus the one of the declared gains `(s, m)` [Nm]; NaN where it is unknown, as
+    where a command is held at the motor's limit.
 
     Args:
         subject: the robot, with the declared gains; m motors, n joints.
@@ -36,7 +36,7 @@ def control_residual(
     Returns:
         The residual, and the motors whose controllers have another form.
     """
-    found, others = np.full(logged.shape, np.nan), []
+    residual, others = np.full(logged.shape, np.nan), []
     for motor, name in enumerate(subject.motors):
         share = subject.motor_from_joint[motor]
         joints = np.flatnonzero(share)
@@ -54,5 +54,5 @@ def control_residual(
         if np.sum(left**2) > OTHERWISE * np.sum(command**2):
             others.append(name)
             continue
-        found[known, motor] = logged[known, motor] - terms[known].sum(1)
-    return found, tuple(others)
+        residual[known, motor] = logged[known, motor] - terms[known].sum(1)
+    return residual, tuple(others)

@@ -220,7 +220,7 @@ def _bands(row: Row, mask: np.ndarray, length: int, step: float) -> tuple[Band, 
     span = length * step
     edges = [0.0, *(e for e in EDGES if e < 0.8 * row.cutoff), row.cutoff]
     total = np.concatenate([[0], np.cumsum(mask)])
-    found = []
+    bands = []
     for index, (low, high) in enumerate(itertools.pairwise(edges)):
         top = min(high * (1 + OVERLAP), 0.5 / step)
         first = int(np.ceil(low * (1 - OVERLAP) * span)) if low else 0
@@ -239,9 +239,13 @@ def _bands(row: Row, mask: np.ndarray, length: int, step: float) -> tuple[Band, 
         near = (total[right] - total[left]) / np.maximum(
             np.minimum(place + reach, length) - np.maximum(place - reach, 0), 1.0
         )
-        kept = np.flatnonzero((near >= KNOWN) & (place < len(mask)))
-        found.append(Band(index, low, high, slice(first, last + 1), gain, int(count), length, kept))
-    return tuple(found)
+        counted_samples = np.flatnonzero((near >= KNOWN) & (place < len(mask)))
+        bands.append(
+            Band(
+                index, low, high, slice(first, last + 1), gain, int(count), length, counted_samples
+            )
+        )
+    return tuple(bands)
 
 
 def _rise(frequency: np.ndarray, edge: float) -> np.ndarray:
@@ -259,10 +263,10 @@ def traced(filtered_log: FilteredLog, traces: Mapping[str, np.ndarray]) -> dict[
     Returns:
         Samples by row, `(k, samples)` each; rows that the traces leave alone are missing.
     """
-    found = {}
+    samples = {}
     for place, row in enumerate(filtered_log.rows):
         if row.residual_name in traces:
             values = traces[row.residual_name][..., row.column]
             if np.any(np.nan_to_num(values) != 0):
-                found[place] = filtered_log.sample(place, values)
-    return found
+                samples[place] = filtered_log.sample(place, values)
+    return samples

@@ -30,7 +30,7 @@ FEWEST = 50
 
 
 def on_the_joints_side(subject: Subject, logs: Sequence[Log]) -> Subject:
-    """Find out on which side of their gears a file's motors are logged.
+    """Find out on which side of their gears the motors of a robot's file are logged.
 
     Args:
         subject: the robot.
@@ -41,14 +41,16 @@ def on_the_joints_side(subject: Subject, logs: Sequence[Log]) -> Subject:
     """
     if not subject.one_to_one or np.all(subject.gear == 1):
         return subject
-    told = [kind for kind in KINDS if any(log.names(kind) for log in logs)]
-    if not told:
+    logged_kinds = [kind for kind in KINDS if any(log.names(kind) for log in logs)]
+    if not logged_kinds:
         return subject
-    ready = [signals for log in logs if (signals := _conditioned(log, subject)) is not None]
+    conditioned_logs = [
+        signals for log in logs if (signals := _conditioned(log, subject)) is not None
+    ]
     scales = {
-        k: 1 / subject.gear if k == "motor_velocity" else subject.gear
-        for k in told
-        if _before_gear(subject, logs, ready, k)
+        kind: 1 / subject.gear if kind == "motor_velocity" else subject.gear
+        for kind in logged_kinds
+        if _before_gear(subject, logs, conditioned_logs, kind)
     }
     if not scales:
         return subject
@@ -91,20 +93,27 @@ def _misfit(ratio: np.ndarray) -> np.ndarray:
 
 
 def _slopes(signals: Signals, kind: str) -> np.ndarray:
-    """What the motion of the joints needs over what a log tells, by least squares; the gear where
-    that is before it `(m,)`.
+    """Ratio of what the motion of the joints needs to what a log holds, by least squares, inverted
+    for speeds: the gear where the log is on the motor's side of it `(m,)`.
     """
     log, subject = signals.log, signals.subject
-    found = np.full(len(subject.motors), np.nan)
-    told = resampled(log.time, of_motors(log, kind, subject), signals.time)
+    slopes = np.full(len(subject.motors), np.nan)
+    logged = resampled(log.time, of_motors(log, kind, subject), signals.time)
     if kind == "motor_current":
-        told = told * subject.torque_constant
+        logged = logged * subject.torque_constant
     needed = signals.velocity if kind == "motor_velocity" else signals.rigid
     for motor in range(len(subject.motors)):
-        known = np.isfinite(told[:, motor]) & np.isfinite(needed[:, motor]) & signals.valid
-        one, other = told[known, motor], needed[known, motor]
-        if known.sum() >= FEWEST and one.any() and other.any() and one @ other:
+        known = np.isfinite(logged[:, motor]) & np.isfinite(needed[:, motor]) & signals.valid
+        logged_part, needed_part = logged[known, motor], needed[known, motor]
+        if (
+            known.sum() >= FEWEST
+            and logged_part.any()
+            and needed_part.any()
+            and logged_part @ needed_part
+        ):
             # either regression is biased low by noise and by what the model lacks; their geometric
             # mean less so
-            found[motor] = np.sign(one @ other) * np.sqrt((other @ other) / (one @ one))
-    return 1 / found if kind == "motor_velocity" else found
+            slopes[motor] = np.sign(logged_part @ needed_part) * np.sqrt(
+                (needed_part @ needed_part) / (logged_part @ logged_part)
+            )
+    return 1 / slopes if kind == "motor_velocity" else slopes

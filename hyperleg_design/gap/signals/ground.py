@@ -78,8 +78,8 @@ class Footing:
     """What `pressing` found already; most of what asks differs in friction alone."""
 
     def pressing(self, spring: float, damper: float) -> np.ndarray:
-        """Compute the vertical force of a ground at this motion, with its floor where it bears the
-        mean of the logged forces.
+        """Compute the vertical force of a ground at this motion, with the floor at the height at
+        which it bears the mean of the logged forces.
 
         Args:
             spring: scale of k.
@@ -89,12 +89,12 @@ class Footing:
             The force [N], `(t,)`.
         """
         key = float(spring), float(damper)
-        found = self.known.get(key)
-        if found is None:
-            found = self._pressing(*key)
+        force = self.known.get(key)
+        if force is None:
+            force = self._pressing(*key)
             if len(self.known) < KEPT:
-                self.known[key] = found
-        return found
+                self.known[key] = force
+        return force
 
     def _pressing(self, spring: float, damper: float) -> np.ndarray:
         if not self.judged.any():
@@ -160,10 +160,10 @@ class Footing:
         pressing = np.stack(
             [self.pressing(1 / c, d / np.sqrt(c)) for c, d in zip(compliance, damping, strict=True)]
         )
-        found = np.concatenate([tangential, pressing[..., None]], -1)
+        force = np.concatenate([tangential, pressing[..., None]], -1)
         return np.where(
             (normal > LOADED)[None, :, None],
-            found,
+            force,
             np.where(normal[None, :, None] <= 0, self.force[None], np.nan),
         )
 
@@ -191,7 +191,7 @@ def footings(signals: Signals) -> tuple[Footing, ...]:
         relative, signals.step, axis=0
     )
     velocity += pads.pad_rolling(subject, signals.position, base.rotation, signals.step)
-    found = []
+    feet = []
     for index in range(len(subject.feet)):
         own = np.flatnonzero(subject.pad_foot == index)
         force = signals.contact[:, index]
@@ -216,7 +216,7 @@ def footings(signals: Signals) -> tuple[Footing, ...]:
             if signals.pad_force is None
             else signals.pad_force[:, own]
         )
-        found.append(
+        feet.append(
             Footing(
                 force,
                 slide,
@@ -231,7 +231,7 @@ def footings(signals: Signals) -> tuple[Footing, ...]:
                 settled,
             )
         )
-    return tuple(found)
+    return tuple(feet)
 
 
 def ground_residual(signals: Signals) -> np.ndarray | None:
@@ -246,8 +246,10 @@ def ground_residual(signals: Signals) -> np.ndarray | None:
     feet = footings(signals)
     if not feet:
         return None
-    one = np.ones(1)
-    return np.concatenate([foot.force - foot.ground(one, one, one)[0] for foot in feet], 1)
+    unscaled = np.ones(1)
+    return np.concatenate(
+        [foot.force - foot.ground(unscaled, unscaled, unscaled)[0] for foot in feet], 1
+    )
 
 
 def _loads(signals: Signals, own: np.ndarray, lowest: np.ndarray) -> np.ndarray:

@@ -68,7 +68,7 @@ def limit_cycle(
         Their speeds and shares; None where no joint is in one.
     """
     ticks, count = position.shape
-    found = LimitCycle(
+    cycle = LimitCycle(
         np.zeros((ticks, count)), np.full(count, np.nan), np.zeros(count), np.zeros(count, bool)
     )
     for joint in range(count):
@@ -84,10 +84,10 @@ def limit_cycle(
             continue
         square = _averaged(fast**2, max(round(WINDOW / step), 1))
         most = np.sqrt(2 * share * square)
-        found.speed[:, joint] = np.maximum(most - PRESLIDING * 2 * np.pi * frequency, 0.0)
-        found.frequency[joint], found.share[joint] = frequency, _line(apart, step, lowest)[1]
-        found.joints[joint] = bool((found.speed[:, joint] > 0).mean() >= UNSETTLED)
-    return found if found.speed.any() else None
+        cycle.speed[:, joint] = np.maximum(most - PRESLIDING * 2 * np.pi * frequency, 0.0)
+        cycle.frequency[joint], cycle.share[joint] = frequency, _line(apart, step, lowest)[1]
+        cycle.joints[joint] = bool((cycle.speed[:, joint] > 0).mean() >= UNSETTLED)
+    return cycle if cycle.speed.any() else None
 
 
 def _filled(values: np.ndarray) -> np.ndarray | None:

@@ -87,8 +87,10 @@ def _healthy_voltage(logs: Sequence[Log]) -> float:
 def _agreed(values: Sequence[str], field: str, logs: Sequence[Log]) -> str:
     stated = {v: log.name for v, log in zip(values, logs, strict=True) if v}
     if len(stated) > 1:
-        found = ", ".join(f"{v} ({name})" for v, name in stated.items())
-        raise InputError("logs", field, found, "differ: diagnose logs of one robot at a time")
+        values_by_log = ", ".join(f"{v} ({name})" for v, name in stated.items())
+        raise InputError(
+            "logs", field, values_by_log, "differ: diagnose logs of one robot at a time"
+        )
     return next(iter(stated), "")
 
 

@@ -34,14 +34,14 @@ def link_regressor(signals: Signals, link: str) -> np.ndarray:
         InputError: no such link or joint.
     """
     with _LOCK:
-        found = _REGRESSORS.setdefault(signals, {}).get(link)
-    if found is None:
-        found = _regressors(signals, link)[0]
-        found.setflags(write=False)
+        regressor = _REGRESSORS.setdefault(signals, {}).get(link)
+    if regressor is None:
+        regressor = _regressors(signals, link)[0]
+        regressor.setflags(write=False)
         with _LOCK:
-            _forget(KEPT - found.nbytes)
-            _REGRESSORS.setdefault(signals, {})[link] = found
-    return found
+            _forget(KEPT - regressor.nbytes)
+            _REGRESSORS.setdefault(signals, {})[link] = regressor
+    return regressor
 
 
 def _forget(room: int) -> None:

@@ -24,7 +24,7 @@ over (assumed)."""
 
 
 def moving(known: np.ndarray, resting: np.ndarray, step: float, *, rubs: bool) -> np.ndarray:
-    """Choose the known ticks of a joint without its rest.
+    """Choose the known ticks at which a joint does not rest.
 
     The rest of a joint that hardly moves counts, too, unless it has dry friction (`rubs`). Then
     only long stretches of its motion count, because what smoothing leaves of jerks is no noise any
@@ -39,13 +39,13 @@ def moving(known: np.ndarray, resting: np.ndarray, step: float, *, rubs: bool) -
     Returns:
         The ticks that count, `(t,)`.
     """
-    found = known & ~resting
-    if found.sum() > (SELDOM if rubs else LEAST_MOVING) * known.sum():
-        return found
+    moves = known & ~resting
+    if moves.sum() > (SELDOM if rubs else LEAST_MOVING) * known.sum():
+        return moves
     if not rubs:
         return known
-    long = np.zeros_like(found)
-    for part in stretches(found, STRETCH / step):
+    long = np.zeros_like(moves)
+    for part in stretches(moves, STRETCH / step):
         long[part] = True
     return long
 

@@ -35,7 +35,7 @@ def sensed_velocity(velocity: np.ndarray, motion: Smooth, step: float) -> np.nda
     Returns:
         The velocity [rad/s], `(t, n)`.
     """
-    found = motion.first.copy()
+    sensed = motion.first.copy()
     for joint, (logged, speed, second) in enumerate(
         zip(velocity.T, motion.first.T, motion.second.T, strict=True)
     ):
@@ -47,8 +47,8 @@ def sensed_velocity(velocity: np.ndarray, motion: Smooth, step: float) -> np.nda
         size = float(np.sqrt(np.mean(speed[known] ** 2)))
         off = known & (apart > max(APART * size, CLEARLY * float(np.median(apart[known]))))
         near = known & (_averaged(off.astype(float), 2 * MARGIN / step) > 0)
-        found[near, joint] = logged[near]
-    return found
+        sensed[near, joint] = logged[near]
+    return sensed
 
 
 def _averaged(values: np.ndarray, width: float) -> np.ndarray:

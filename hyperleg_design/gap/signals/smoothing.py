@@ -224,7 +224,7 @@ def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: in
         return Noise(float(np.std(samples)), MOST_PER_SAMPLE * nyquist)
     lowest = min(2 * np.pi * LOWEST_CROSSOVER, 0.3 * nyquist)
     crossovers = np.geomspace(lowest, MOST_PER_SAMPLE * nyquist, CROSSOVERS)
-    best, found = -np.inf, Noise(float(np.std(samples)), float(crossovers[-1]))
+    best, noise = -np.inf, Noise(float(np.std(samples)), float(crossovers[-1]))
     # commanded motion ends in a band of its own, more steeply than white jerk
     for steeper in STEEPER:
         shape = 1 + (crossovers[:, None] / omega) ** (2 * (order + steeper))
@@ -234,11 +234,11 @@ def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: in
         if likelihood[top] > best:
             beyond = 1.0 if steeper == 0 else BEYOND
             best = float(likelihood[top])
-            found = Noise(
+            noise = Noise(
                 float(np.sqrt(level[top])),
                 min(beyond * float(crossovers[top]), float(crossovers[-1])),
             )
-    return found
+    return noise
 
 
 def _fit(

@@ -49,11 +49,11 @@ def transmission_residual(
         ratio = float(own @ turns / (own @ own))
         if not 1 / FARTHEST < ratio < FARTHEST:
             residual[:, motor] = np.nan
-            says = (
+            reason = (
                 f"{ratio:.3g} times what its joints' motion gives: of another gear, unit or "
                 f"sign than the model's, not used"
             )
-            refused.append(f"motor_velocity of {name} is {says}")
+            refused.append(f"motor_velocity of {name} is {reason}")
     return residual, tuple(refused)
 
 

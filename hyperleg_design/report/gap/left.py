@@ -121,7 +121,9 @@ def _everywhere(shown: Sequence[Evidence], fits: Sequence[Friction], enough: flo
     """A sentence on friction of all joints, where it explains enough of what is left of them."""
     if not shown:
         return ""
-    squares = np.nan_to_num(root_mean_square(np.concatenate([one.after for one in shown]))) ** 2
+    squares = (
+        np.nan_to_num(root_mean_square(np.concatenate([evidence.after for evidence in shown]))) ** 2
+    )
     share = float(squares @ [fit.share for fit in fits]) / max(float(squares.sum()), 1e-300)
     if share < enough:
         return ""

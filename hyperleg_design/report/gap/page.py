@@ -118,13 +118,15 @@ def _about(diagnosis: Mapping[str, Any], signals: Sequence[Signals]) -> str:
 
 
 def _telling_residual(signals: Sequence[Signals], causes: Sequence[Mapping[str, Any]]) -> str:
-    """The residual in which the first cause shows; motion without one."""
+    """Name of the residual in which the first cause shows; `motion` where there is no cause."""
     for cause in causes[:1]:
-        kind = effect(str(cause["effect"]))
-        for one in signals[:1]:
-            traces = kind.trace(one, str(cause["location"]), kind.nulls[None])
+        cause_effect = effect(str(cause["effect"]))
+        for log_signals in signals[:1]:
+            traces = cause_effect.trace(
+                log_signals, str(cause["location"]), cause_effect.nulls[None]
+            )
             for name in ("motion", *sorted(traces)):
-                if name in traces and name in one.residual:
+                if name in traces and name in log_signals.residual:
                     return name
     return "motion"
 
@@ -226,7 +228,7 @@ def _rows(shown: Sequence[Evidence], explained: bool) -> Details | None:
     """Size of the residual of every joint or motor, in all logs."""
     if not shown:
         return None
-    alike = [one for one in shown if one.residual_name == shown[0].residual_name]
+    alike = [evidence for evidence in shown if evidence.residual_name == shown[0].residual_name]
     before, after = (
         root_mean_square(np.concatenate(part))
         for part in ([s.before for s in alike], [s.after for s in alike])

@@ -200,9 +200,9 @@ def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
     """
     gap, remainder = diagnosis["gap"], diagnosis.get("remainder")
     texts = [
-        f"The reference log {one['log']} differs from the others by {phrase([one])}, which was "
-        f"taken out of it."
-        for one in diagnosis.get("reference_differences", ())
+        f"The reference log {difference['log']} differs from the others by "
+        f"{phrase([difference])}, which was taken out of it."
+        for difference in diagnosis.get("reference_differences", ())
     ]
     if diagnosis["causes"]:
         closed = float(gap["closed"])

@@ -173,17 +173,17 @@ def sensitivity_rows(diagnosis: Mapping[str, Any]) -> list[tuple[str, str, str, 
     return rows
 
 
-def change_text(one: Mapping[str, Any]) -> str:
+def change_text(entry: Mapping[str, Any]) -> str:
     """Write a change of a parameter as people state it: shares in per cent, anything else in its
     unit.
 
     Args:
-        one: an entry of `sensitivity`.
+        entry: an element of `sensitivity`.
 
     Returns:
         The text.
     """
-    change, unit = float(one["change"]), str(one["unit"])
+    change, unit = float(entry["change"]), str(entry["unit"])
     return f"{change:.2g} {unit}" if unit else f"{100 * change:.2g} %"
 
 
@@ -224,9 +224,9 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     if remainder := diagnosis.get("remainder"):
         lines.append(f"  remainder: {100 * remainder:.0f} % of the gap, which no effect explains")
     lines += [
-        f"  {one['location']} {one['says']}"
-        for one in diagnosis.get("residual_shape", ())
-        if one["shape"] in APART
+        f"  {shape['location']} {shape['says']}"
+        for shape in diagnosis.get("residual_shape", ())
+        if shape["shape"] in APART
     ]
     titles = _titles(diagnosis["where"])
     places = [
@@ -237,8 +237,13 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     if places:
         lines.append(f"  where: {', '.join(places)}")
     if diagnosis["verdict"] == "unknown":
-        left = [one for one in diagnosis.get("residual_shape", ()) if one["shape"] not in APART]
-        lines += [f"  left: {one['shape']} at {one['location']}: {one['says']}" for one in left[:3]]
+        left = [
+            shape for shape in diagnosis.get("residual_shape", ()) if shape["shape"] not in APART
+        ]
+        lines += [
+            f"  left: {shape['shape']} at {shape['location']}: {shape['says']}"
+            for shape in left[:3]
+        ]
         lines += [f"  {text}" for text in beyond_references(diagnosis)]
     if diagnosis["verdict"] == "none" and (rows := sensitivity_rows(diagnosis)):
         lines.append("  these logs would have shown, nine times in ten, from:")

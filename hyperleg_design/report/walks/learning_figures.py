@@ -41,7 +41,7 @@ def learning_figure(policies: Sequence[Shipped]) -> Figure:
     trainings = {p.training: p for p in policies}
     curves = {name: learning_curve(p.path.parent) for name, p in trainings.items()}
     helped = any(row.get("assist") for curve in curves.values() for row in curve)
-    shown = [one for one in SHOWN if helped or one[0] != "assist"]
+    shown = [column for column in SHOWN if helped or column[0] != "assist"]
     groups = list(dict.fromkeys(p.group for p in trainings.values()))
     designs = list(dict.fromkeys(p.design for p in trainings.values()))
     with figure_style():

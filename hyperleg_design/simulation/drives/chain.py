@@ -231,12 +231,12 @@ class Chain:
         Returns:
             Copies by name, as `put_state` takes them.
         """
-        kept = {
+        of_alterations = {
             f"{i}.{name}": np.array(getattr(live, name))
             for i, live in enumerate(self.lives)
-            for name in live.kept
+            for name in live.hidden_state
         }
-        return {"last_torque": self.last_torque.copy(), **kept}
+        return {"last_torque": self.last_torque.copy(), **of_alterations}
 
     def put_state(self, state: dict[str, np.ndarray]) -> None:
         """Restore arrays that `state` returned.
@@ -246,5 +246,5 @@ class Chain:
         """
         self.last_torque = state["last_torque"].copy()
         for i, live in enumerate(self.lives):
-            for name in live.kept:
+            for name in live.hidden_state:
                 getattr(live, name)[:] = state[f"{i}.{name}"]

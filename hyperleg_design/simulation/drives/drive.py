@@ -134,8 +134,8 @@ class Drive:
             self.chain.reset(ids, position, velocity)
 
     def _spread(self) -> None:
-        """Constants written out for every simulation and leg, so that NumPy runs through them in
-        one go.
+        """Broadcast constants to every simulation and leg, so that NumPy runs through them in one
+        go.
         """
 
         def full(values: np.ndarray) -> np.ndarray:
@@ -143,9 +143,9 @@ class Drive:
                 np.broadcast_to(values, (self.count, self._shape[1], values.shape[-1]))
             )
 
-        one = self.model.envelope
+        limits = self.model.envelope
         names = ("no_load_speed", "stall_torque", "peak_torque", "power_constant")
-        envelope = dataclasses.replace(one, **{n: full(getattr(one, n)) for n in names})
+        envelope = dataclasses.replace(limits, **{n: full(getattr(limits, n)) for n in names})
         gains = {n: full(getattr(self.model, n)) for n in ("rated_torque", "stiffness", "damping")}
         self.model = dataclasses.replace(self.model, envelope=envelope, **gains)
         self.coulomb, self.viscous = full(self.coulomb), full(self.viscous)

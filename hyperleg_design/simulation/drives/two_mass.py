@@ -72,7 +72,7 @@ class Belt(Alteration):
 
 
 class _Rotor(Live):
-    kept: ClassVar[tuple[str, ...]] = (
+    hidden_state: ClassVar[tuple[str, ...]] = (
         "angle",
         "speed",
         "begun",
@@ -115,7 +115,7 @@ class _Rotor(Live):
         self.side, self.stiffening = full(belt.side), full(belt.stiffening)
 
     def reset(self, ids: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> None:
-        for name in self.kept:
+        for name in self.hidden_state:
             getattr(self, name)[ids] = 0.0
 
     def begin(self, tick: Tick) -> None:

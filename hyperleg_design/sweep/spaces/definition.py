@@ -87,7 +87,7 @@ class Sweep:
         )
         return {axis.name: axis.at(positions[:, i]) for i, axis in enumerate(self.axes)}
 
-    def made(self, design: RobotDesign, variant: str) -> RobotDesign:
+    def ablated(self, design: RobotDesign, variant: str) -> RobotDesign:
         """Turn a design into one of the sweep's variants.
 
         Args:
@@ -115,7 +115,7 @@ class Sweep:
         values: dict[str, Any] = {}
         for axis in self.axes:
             values |= axis.leaf_values(self.base, np.asarray(samples[axis.name]))
-        return self.made(self.base.with_values(values, self.name), variant)
+        return self.ablated(self.base.with_values(values, self.name), variant)
 
     def to_mapping(self) -> dict[str, Any]:
         """Write all that decides the numbers in the table as plain values.

@@ -70,7 +70,9 @@ def plan(
     run = tuple(p if isinstance(p, Protocol) else load_protocol(p) for p in protocols)
     if len({kind_of(p) for p in run}) < len(run):
         raise InputError("evaluate", "", list(map(str, protocols)), "expects one of each kind")
-    robots = {variant: sweep.made(sweep.base, variant) for variant in sweep.variants} if run else {}
+    robots = (
+        {variant: sweep.ablated(sweep.base, variant) for variant in sweep.variants} if run else {}
+    )
     chosen = {
         (kind_of(protocol), variant): policies_for(kind_of(protocol), robot, seeds, policies)
         for protocol in run

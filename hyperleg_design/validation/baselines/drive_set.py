@@ -85,8 +85,8 @@ class DriveSet:
         return EFFECT[KINDS[index // joints]], self.subject.joints[index % joints]
 
     def cause(self, values: np.ndarray) -> tuple[str, str, float]:
-        """What such a fit would name: effect, location and size of the largest change over its
-        usual nuisance parameter.
+        """What such a fit would name: effect, location and size of the largest change over the
+        spread of its parameter.
 
         Args:
             values: of all parameters `(P,)`.
@@ -170,7 +170,7 @@ def _spreads(subject: Subject, step: float) -> np.ndarray:
 
 
 def check_logs(signals: Sequence[Signals]) -> None:
-    """Whether these methods can replay such logs.
+    """Refuse logs that these methods cannot replay.
 
     Args:
         signals: the conditioned logs.
@@ -180,10 +180,10 @@ def check_logs(signals: Sequence[Signals]) -> None:
     """
     if not signals:
         raise InputError("baselines", "logs", 0, "expects at least one log")
-    for one in signals:
-        if best_input(one) != "target":
+    for log_signals in signals:
+        if best_input(log_signals) != "target":
             raise InputError(
-                one.log.name,
+                log_signals.log.name,
                 "position_target",
                 None,
                 "expects targets and gains of all joints: these methods replay the closed loop",

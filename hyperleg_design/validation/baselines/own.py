@@ -42,8 +42,8 @@ STEPS, ENOUGH = 6, 1e-3
 """Steps with replays, and the least share of the squared error that a step must take off for
 another one."""
 WIDE = 50.0
-"""Standard deviation of the parameters over their usual nuisance parameter: a prior for those that
-the logs do not show."""
+"""Standard deviation of the parameters over their spread as nuisance parameters: a prior for those
+that the logs do not show."""
 CATALOGUE = {
     "damping": "viscous_friction",
     "friction": "coulomb_friction",
@@ -177,45 +177,45 @@ def fit_own(signals: Sequence[Signals], drives: DriveSet) -> Fitted:
     """
     check_logs(signals)
     begun = time.perf_counter()
-    postures = [_posture_of(one) for one in signals]
+    postures = [_posture_of(log_signals) for log_signals in signals]
     values = np.zeros(drives.count)
     history = []
     for _ in range(ROUNDS):
         slopes, errors = zip(
             *(
-                _first_order(one, drives, values, posture)
-                for one, posture in zip(signals, postures, strict=True)
+                _first_order(log_signals, drives, values, posture)
+                for log_signals, posture in zip(signals, postures, strict=True)
             ),
             strict=True,
         )
-        found = _solved(np.concatenate(slopes), np.concatenate(errors), drives, values)
-        moved, values = np.abs(found - values), found
+        solution = _solved(np.concatenate(slopes), np.concatenate(errors), drives, values)
+        change, values = np.abs(solution - values), solution
         history.append((time.perf_counter() - begun, values.copy()))
-        if np.all(moved < 0.1 * drives.spread):
+        if np.all(change < 0.1 * drives.spread):
             break
-    rollouts = [Rollout(one, drives) for one in signals]
+    rollouts = [Rollout(log_signals, drives) for log_signals in signals]
     # the start is the better of what the traces say and the model as it is
     tried = [(_cost(rollouts, start), start) for start in (values, np.zeros(drives.count))]
     cost, values = min(tried, key=lambda pair: pair[0])
     evaluations = len(tried)
     for _ in range(STEPS):
         slopes = [
-            _first_order(one, drives, values, posture)[0]
-            for one, posture in zip(signals, postures, strict=True)
+            _first_order(log_signals, drives, values, posture)[0]
+            for log_signals, posture in zip(signals, postures, strict=True)
         ]
         errors = [_known_error(rollout, values) for rollout in rollouts]
         goal = _solved(np.concatenate(slopes), np.concatenate(errors), drives, values)
-        bettered = False
+        improved = False
         for share in (1.0, 0.4, 0.15):
-            there = values + share * (goal - values)
-            reached = _cost(rollouts, there)
+            trial_values = values + share * (goal - values)
+            reached = _cost(rollouts, trial_values)
             evaluations += 1
             if reached < cost:
-                bettered = cost - reached > ENOUGH * cost
-                cost, values = reached, there
+                improved = cost - reached > ENOUGH * cost
+                cost, values = reached, trial_values
                 history.append((time.perf_counter() - begun, values.copy()))
                 break
-        if not bettered:
+        if not improved:
             break
     return Fitted(
         "own", values, time.perf_counter() - begun, evaluations, tuple(history), "finished"
@@ -229,35 +229,36 @@ def _cost(rollouts: Sequence[Rollout], values: np.ndarray) -> float:
 
 def _known_error(rollout: Rollout, values: np.ndarray) -> np.ndarray:
     """Error of the blocks that `_first_order` takes, one after the other."""
-    one = rollout.signals
-    whole = np.zeros_like(one.position)
+    signals = rollout.signals
+    whole = np.zeros_like(signals.position)
     whole[rollout.ticks] = rollout.error(values)
-    return np.asarray(_blocks(one, whole)[_known(one)].ravel())
+    return np.asarray(_blocks(signals, whole)[_known(signals)].ravel())
 
 
-def _known(one: Signals) -> np.ndarray:
+def _known(signals: Signals) -> np.ndarray:
     return np.asarray(
-        _blocks(one, (np.isfinite(residual_of(one)).all(1) & one.valid).astype(float)) == 1
+        _blocks(signals, (np.isfinite(residual_of(signals)).all(1) & signals.valid).astype(float))
+        == 1
     )
 
 
 def _first_order(
-    one: Signals, drives: DriveSet, values: np.ndarray, posture: _Posture
+    signals: Signals, drives: DriveSet, values: np.ndarray, posture: _Posture
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Slope of the predicted position by each parameter, in usual nuisance parameters `(N, P)`, and
+    """Slope of the predicted position by each parameter, times the parameter's spread `(N, P)`, and
     the error left `(N,)` [rad].
     """
-    columns, rest = _columns(one, drives, values)
+    columns, rest = _columns(signals, drives, values)
     stacked = np.concatenate([columns, rest[..., None]], -1)
     stacked[~np.isfinite(stacked)] = 0.0
-    found = (
-        closed_loop_of(one, drives, values, posture)
-        .response(_blocks(one, stacked))[_known(one)]
+    response = (
+        closed_loop_of(signals, drives, values, posture)
+        .response(_blocks(signals, stacked))[_known(signals)]
         .reshape(-1, drives.count + 1)
     )
     # a torque that the model lacks (a positive trace) holds the robot back: position falls behind
     # the prediction
-    return -found[:, :-1], -found[:, -1]
+    return -response[:, :-1], -response[:, -1]
 
 
 def _solved(
@@ -280,58 +281,63 @@ def _solved(
     return np.asarray(np.clip(values + step * drives.spread, drives.low, drives.high))
 
 
-def residual_of(one: Signals) -> np.ndarray:
-    """Residual that is fitted: of motion, with the command as the torque, as replays of targets
-    have it `(t, n)` [Nm].
+def residual_of(signals: Signals) -> np.ndarray:
+    """Compute the residual of motion that is fitted `(t, n)` [Nm], with the command as the torque,
+    because replays follow targets.
 
     Args:
-        one: a conditioned log.
+        signals: a conditioned log.
 
     Returns:
         The residual `(t, n)` [Nm].
     """
-    if one.measured is None:
-        return one.residual["motion"]
-    assert one.command is not None
-    commanded = limited_torque(one.subject, one.command.copy(), one.motor_speed, one.voltage)
-    return one.residual["motion"] + applied(one.subject.joint_from_motor, commanded - one.believed)
+    if signals.measured is None:
+        return signals.residual["motion"]
+    assert signals.command is not None
+    commanded = limited_torque(
+        signals.subject, signals.command.copy(), signals.motor_speed, signals.voltage
+    )
+    return signals.residual["motion"] + applied(
+        signals.subject.joint_from_motor, commanded - signals.believed
+    )
 
 
-def _columns(one: Signals, drives: DriveSet, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Slope of the traces by each parameter, in usual nuisance parameters `(t, n, P)`, and the
+def _columns(
+    signals: Signals, drives: DriveSet, values: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Slope of the traces by each parameter, times the parameter's spread `(t, n, P)`, and the
     residual less the traces `(t, n)`.
     """
-    subject = one.subject
+    subject = signals.subject
     joints = len(subject.joints)
-    columns = np.zeros((*one.velocity.shape, drives.count))
-    rest = residual_of(one) - drives.part(values, "armature") * one.acceleration
+    columns = np.zeros((*signals.velocity.shape, drives.count))
+    rest = residual_of(signals) - drives.part(values, "armature") * signals.acceleration
     for joint, name in enumerate(subject.joints):
-        columns[:, joint, joint] = drives.spread[joint] * one.acceleration[:, joint]
+        columns[:, joint, joint] = drives.spread[joint] * signals.acceleration[:, joint]
         for kind, identifier in CATALOGUE.items():
             place = KINDS.index(kind) * joints + joint
             columns[..., place], trace = _sloped(
-                one, identifier, name, float(values[place]), float(drives.spread[place])
+                signals, identifier, name, float(values[place]), float(drives.spread[place])
             )
             rest = rest - trace
     late, spread = float(values[-1]), float(drives.spread[-1])
-    found = _late_targets(one, np.array([late + spread, late]))
-    columns[..., -1] = found[0] - found[1]
-    return columns, rest - found[1]
+    traces = _late_targets(signals, np.array([late + spread, late]))
+    columns[..., -1] = traces[0] - traces[1]
+    return columns, rest - traces[1]
 
 
-def _late_targets(one: Signals, delay: np.ndarray) -> np.ndarray:
-    """Trace of targets that come late: what the controller would ask for now, less what it asks for
-    `(k, t, n)` [Nm].
+def _late_targets(signals: Signals, delay: np.ndarray) -> np.ndarray:
+    """Trace of late targets: the torque that controllers ask for with the targets of now, less that
+    with late ones `(k, t, n)` [Nm].
     """
-    assert one.target is not None
-    assert one.target is not None
-    target = held(one.target, one.subject.default)
-    now = np.stack([delayed(column, delay, one.step) for column in target.T], -1)
-    return np.nan_to_num(one.subject.gains[:, 0]) * ~one.subject.passive * (target - now)
+    assert signals.target is not None
+    target = held(signals.target, signals.subject.default)
+    now = np.stack([delayed(column, delay, signals.step) for column in target.T], -1)
+    return np.nan_to_num(signals.subject.gains[:, 0]) * ~signals.subject.passive * (target - now)
 
 
 def _sloped(
-    one: Signals, identifier: str, location: str, value: float, spread: float
+    signals: Signals, identifier: str, location: str, value: float, spread: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Slope over one spread of an effect's trace in the residual of motion, and that trace `(t, n)`
     each.
@@ -339,5 +345,7 @@ def _sloped(
     effect = EFFECTS[identifier]
     settings = np.repeat(effect.nulls[None], 2, 0)
     settings[:, 0] += [value + spread, value]
-    found = effect.trace(one, location, settings).get("motion", np.zeros((2, *one.velocity.shape)))
-    return found[0] - found[1], found[1]
+    traces = effect.trace(signals, location, settings).get(
+        "motion", np.zeros((2, *signals.velocity.shape))
+    )
+    return traces[0] - traces[1], traces[1]

@@ -134,8 +134,8 @@ def position_gap(signals: Sequence[Signals], drives: DriveSet, values: np.ndarra
         The errors `(k,)` [rad].
     """
     total, weight = np.zeros(len(np.atleast_2d(values))), 0.0
-    for one in signals:
-        length = one.time[-1] - one.time[0]
-        total = total + length * squared_error(one, predicted(one, drives, values))
+    for log_signals in signals:
+        length = log_signals.time[-1] - log_signals.time[0]
+        total = total + length * squared_error(log_signals, predicted(log_signals, drives, values))
         weight += length
     return np.asarray(np.sqrt(total / weight))

@@ -66,7 +66,9 @@ def fit_sysid(signals: Sequence[Signals], drives: DriveSet, *, seconds: float = 
                 modifier=_modifier(name, scale[i], subject),
             )
         )
-    sequences = [_sequence(sysid, one, drives, number) for number, one in enumerate(signals)]
+    sequences = [
+        _sequence(sysid, log_signals, drives, number) for number, log_signals in enumerate(signals)
+    ]
     history: list[tuple[float, np.ndarray]] = []
     evaluations = 0
     best = np.inf
@@ -111,16 +113,16 @@ def fit_sysid(signals: Sequence[Signals], drives: DriveSet, *, seconds: float = 
 
     def residual(x: np.ndarray, given: Any, **options: Any) -> Any:
         nonlocal evaluations, best
-        found = inner(x, given, **options)
+        residuals = inner(x, given, **options)
         evaluations += 1 if x.ndim == 1 else x.shape[1]
         if x.ndim == 1 or x.shape[1] == 1:
-            value = float(sum(np.sum(np.square(r)) for r in found[0]))
+            value = float(sum(np.sum(np.square(r)) for r in residuals[0]))
             if value < best:
                 best = value
                 history.append((time.perf_counter() - begun, np.asarray(x, float).ravel() * scale))
         if time.perf_counter() - begun > seconds:
             raise _Enough
-        return found
+        return residuals
 
     try:
         with contextlib.redirect_stdout(io.StringIO()):  # the optimizer prints its iterations

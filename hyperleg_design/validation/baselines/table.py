@@ -4,9 +4,9 @@ would name, and its time.
 Every method fits `drive_set`'s parameters to all logs of a case but the last, which is replayed
 afterwards. The gap is the RMS of the whole-log position error there, in one simulator
 (`population`); the floor is that of reference logs where a case has some, else 0. A fixed set names
-the parameter that it changed most, over its usual nuisance parameter, and nothing below `NAMED`.
-Cases with a floating base or without targets and gains are outside what these methods do, and are
-listed as such.
+the parameter that it changed most, over its spread as a nuisance parameter, and nothing below
+`NAMED`. Cases with a floating base or without targets and gains are outside what these methods do,
+and are listed as such.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class Table:
         """One summary a method: cases, median and quartiles of the gap closed, share of right
         causes, median time.
         """
-        found = []
+        rows = []
         for method in METHODS:
             mine = [e for e in self.entries if e.method == method]
             done = [e for e in mine if e.seconds is not None]
@@ -88,7 +88,7 @@ class Table:
                 continue
             closed = np.array([e.closed for e in done if e.closed is not None])
             judged = [e.right for e in done if e.right is not None]
-            found.append(
+            rows.append(
                 {
                     "method": method,
                     "cases": len(mine),
@@ -102,7 +102,7 @@ class Table:
                     "out_of_time": sum(e.stopped.endswith(" s") for e in done),
                 }
             )
-        return found
+        return rows
 
     def markdown(self) -> str:
         """Summary and every case."""
@@ -192,8 +192,10 @@ def baselines_table(
         entries += case_entries(
             folder, name, methods, budget=budget, seed=seed, truth=truths.get(name)
         )
-    told = tuple((name, _told(truths[name])) for name in (list(cases) or known) if name in truths)
-    table = Table(tuple(entries), budget, told)
+    truths_in_words = tuple(
+        (name, _in_words(truths[name])) for name in (list(cases) or known) if name in truths
+    )
+    table = Table(tuple(entries), budget, truths_in_words)
     write_json(
         folder / "baselines.json",
         {"budget": budget, "summary": table.rows(), "entries": [asdict(e) for e in entries]},
@@ -239,12 +241,12 @@ def case_entries(
         ]
     for method in fixed:
         try:
-            found = _fit(method)(train, drives, budget, seed)
+            fitted = _fit(method)(train, drives, budget, seed)
         except HyperlegError as error:
             entries.append(Entry(name, method, "", "", before, None, floor, None, None, str(error)))
             continue
-        after = float(position_gap(held, drives, found.values)[0])
-        effect, location, size = drives.cause(found.values)
+        after = float(position_gap(held, drives, fitted.values)[0])
+        effect, location, size = drives.cause(fitted.values)
         if size < NAMED:
             effect = location = ""
         excess = before - floor
@@ -259,8 +261,8 @@ def case_entries(
                 after if np.isfinite(after) else None,
                 floor,
                 closed,
-                found.seconds,
-                found.stopped,
+                fitted.seconds,
+                fitted.stopped,
                 _right(effect, location, truth),
             )
         )
@@ -308,9 +310,9 @@ def open_case(case: Path) -> tuple[list[Signals], list[Signals], list[Signals], 
 def _of_diagnosis(folder: Path, name: str, truth: dict[str, Any] | None) -> Entry:
     place = folder / DIAGNOSES / name
     try:
-        found = json.loads((place / "diagnosis.json").read_text())
+        diagnosis = json.loads((place / "diagnosis.json").read_text())
         seconds = float(json.loads((place / "seconds.json").read_text())["seconds"])
-        gap = found["gap"]
+        gap = diagnosis["gap"]
     except (OSError, ValueError, KeyError, TypeError):
         return Entry(
             name,
@@ -324,7 +326,7 @@ def _of_diagnosis(folder: Path, name: str, truth: dict[str, Any] | None) -> Entr
             None,
             "no diagnosis in the trial's folder",
         )
-    causes = found.get("causes") or []
+    causes = diagnosis.get("causes") or []
     effect, location = (
         (str(causes[0]["effect"]), str(causes[0]["location"])) if causes else ("", "")
     )
@@ -343,7 +345,7 @@ def _of_diagnosis(folder: Path, name: str, truth: dict[str, Any] | None) -> Entr
         floor,
         closed,
         seconds,
-        str(found["verdict"]),
+        str(diagnosis["verdict"]),
         right,
     )
 
@@ -358,7 +360,7 @@ def _right(effect: str, location: str, truth: dict[str, Any] | None) -> bool | N
     return any(effect == w["effect"] and location in (w["location"], *w["also"]) for w in listed)
 
 
-def _told(truth: dict[str, Any]) -> str:
+def _in_words(truth: dict[str, Any]) -> str:
     wrongs = ", ".join(
         f"{w['effect']} at {w['location']} {w['multiple']:.1f}x" for w in truth["wrongs"]
     )

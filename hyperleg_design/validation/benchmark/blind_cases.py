@@ -52,7 +52,7 @@ def material(data: Path, index: int) -> tuple[Material, Truth]:
     """
     plan = _plans()[index]
     case = walking_case(plan) if plan.plant == "walking" else rig_case(plan)
-    told = describe(case)
+    description = describe(case)
     faults = tuple(
         Fault(
             wrong["effect"],
@@ -60,9 +60,9 @@ def material(data: Path, index: int) -> tuple[Material, Truth]:
             {name: float(value) for name, value in wrong["parameters"].items()},
             listed=wrong["listed"],
         )
-        for wrong in told["wrongs"]
+        for wrong in description["wrongs"]
     )
-    visible = all(wrong["multiple"] >= VISIBLE for wrong in told["wrongs"])
+    visible = all(wrong["multiple"] >= VISIBLE for wrong in description["wrongs"])
     truth = Truth(faults, bool(case.references), visible=visible)
 
     def recordings(logs: Any) -> tuple[Recording, ...]:

@@ -57,8 +57,8 @@ class Outcome:
 def all_cases() -> list[Case]:
     """Every case of this version."""
     newcomers = newcomer_cases, crane_cases, servo_cases, quadruped_cases
-    made = real_cases, drawn_cases, *newcomers, blind_cases
-    cases = [case for some in made for case in some()]
+    suites = real_cases, drawn_cases, *newcomers, blind_cases
+    cases = [case for suite in suites for case in suite()]
     names = [case.name for case in cases]
     assert len(set(names)) == len(names), "names of cases are unique"
     return cases

@@ -53,8 +53,8 @@ def main() -> None:
             logs = [read(case / name) for name in entry["logs"]]
             references = [read(case / name) for name in entry["references"]]
             begun = time.perf_counter()
-            found = diagnose(robot, logs, references, seed=0, threads=1)
-            diagnosis = found if isinstance(found, dict) else found.mapping()
+            result = diagnose(robot, logs, references, seed=0, threads=1)
+            diagnosis = result if isinstance(result, dict) else result.mapping()
         except Exception as error:  # a case that breaks the diagnosis is a miss, not the end
             message = f"{type(error).__name__}: {error}"
             diagnosis = {"schema": 1, "verdict": "error", "message": message}

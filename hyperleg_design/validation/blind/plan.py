@@ -163,14 +163,14 @@ class _Round:
         self.left: list[str] = []
 
     def take(self, count: int) -> list[str]:
-        found: list[str] = []
-        while len(found) < count:
+        taken: list[str] = []
+        while len(taken) < count:
             if not self.left:
                 self.left = list(self.rng.permutation(self.names))
-            found.append(str(self.left.pop()))
-            if len(set(found)) < len(found):
-                found.pop()
-        return found
+            taken.append(str(self.left.pop()))
+            if len(set(taken)) < len(taken):
+                taken.pop()
+        return taken
 
 
 def _one(shares: dict[str, float], rng: np.random.Generator) -> str:

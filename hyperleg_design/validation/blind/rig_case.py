@@ -137,7 +137,7 @@ def _referred(healthy: _Rig, rng: np.random.Generator) -> list[Log]:
 
 
 def calm(trace: Trace) -> bool:
-    """Whether a rig held together: nothing turns further or faster than joints can.
+    """Whether no joint of a run turns farther or faster than joints can.
 
     Args:
         trace: of the run.
@@ -145,9 +145,9 @@ def calm(trace: Trace) -> bool:
     Returns:
         True if it did.
     """
-    found = ((trace.position, WILD), (trace.velocity, WILD_SPEED))
+    limits = ((trace.position, WILD), (trace.velocity, WILD_SPEED))
     return all(
-        bool(np.isfinite(values).all() and np.abs(values).max() < most) for values, most in found
+        bool(np.isfinite(values).all() and np.abs(values).max() < limit) for values, limit in limits
     )
 
 
@@ -217,7 +217,9 @@ class _Rig:
 def _sized(
     rig: _Rig, effect: str, wanted: float, rng: np.random.Generator, taken: Sequence[str]
 ) -> Wrong:
-    """The effect at a place, with the size at which it shows `wanted` times over the floor."""
+    """Draw an effect at a place, with the size at which it shows `wanted` times over the noise
+    floor.
+    """
     best: tuple[float, Wrong] | None = None
     for _ in range(ATTEMPTS):
         draft = draw(rig.chain, effect, rng, taken)
@@ -242,17 +244,17 @@ def _sized(
         ]
         traces = rig.traces(jobs)
         quiet = replace(rig.recorder, dropped=0.0)
-        found = [
+        residuals = [
             residual(rig.log(t, j, quiet, 0), rig.chain) if calm(t) else None
             for t, j in zip(traces, jobs, strict=True)
         ]
-        clean = [f for f in found[:2] if f is not None]
+        clean = [f for f in residuals[:2] if f is not None]
         if len(clean) < 2:  # motions that shake even the healthy rig to pieces say nothing of sizes
             best = best or smallest
             continue
         ratios = []
         for row in range(1, PROBED + 1):
-            pair = [f for f in found[2 * row : 2 * row + 2] if f is not None]
+            pair = [f for f in residuals[2 * row : 2 * row + 2] if f is not None]
             ratios.append(multiple(pair, clean) if len(pair) == 2 else np.inf)
         size, reached = size_at(np.abs(sizes), np.array(ratios), wanted, SIZES[effect].smallest)
         wrong = replace(draft, size=float(size * np.sign(draft.size)))

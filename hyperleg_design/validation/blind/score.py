@@ -223,7 +223,7 @@ def compared(
     views = [View(t, d) for t, d in zip(truths, diagnoses, strict=True)]
     single = [v for v in views if v.kind == "single"]
     sizable = [v for v in single if v.multiple >= SIZABLE]
-    found = [v for v in sizable if v.first(lenient=True)]
+    right = [v for v in sizable if v.first(lenient=True)]
     shown, hidden = (
         [v for v in sizable if v.shown is not None and v.shown == large] for large in (True, False)
     )
@@ -245,7 +245,7 @@ def compared(
         ),
         share_row("... among the first two, of the same", [v.top_two() for v in shown], None),
         share_row("... first, of those smaller than that", [v.first() for v in hidden], None),
-        share_row("right location, where the effect is right", [v.located() for v in found], 0.95),
+        share_row("right location, where the effect is right", [v.located() for v in right], 0.95),
         share_row("... of all single causes at >= 2 x floor", [v.located() for v in sizable], None),
         share_row("false alarm when nothing is wrong", [v.alarm for v in null], 0.05, most=True),
         share_row(
@@ -270,7 +270,7 @@ def compared(
         ),
         share_row("... both, of any size", [v.all_found() for v in both], None),
         calibration_row(views),
-        coverage_row(found),
+        coverage_row(right),
         median_row(
             "excess gap closed on held-out logs, named single cause, median",
             [v.closed for v in sizable if v.first()],

@@ -306,16 +306,16 @@ def _diagnose_one(case: str, out: str, diagnose: Callable[..., Any]) -> None:
     try:
         logs = [read_log(Path(case) / p) for p in entry["logs"]]
         references = [read_log(Path(case) / p) for p in entry["references"]]
-        found = as_mapping(
+        diagnosis = as_mapping(
             diagnose(str(robot) if robot.is_file() else entry["robot"], logs, references, threads=1)
         )
     except HyperlegError as error:
-        found = {"schema": 1, "verdict": FAILED, "message": str(error)}
+        diagnosis = {"schema": 1, "verdict": FAILED, "message": str(error)}
     except Exception as error:
         # one case that breaks the diagnosis is a miss, not the end of a trial
-        found = {"schema": 1, "verdict": FAILED, "message": f"{type(error).__name__}: {error}"}
+        diagnosis = {"schema": 1, "verdict": FAILED, "message": f"{type(error).__name__}: {error}"}
     seconds = time.perf_counter() - begun
-    write_json(Path(out) / "diagnosis.json", found)
+    write_json(Path(out) / "diagnosis.json", diagnosis)
     write_json(Path(out) / "seconds.json", {"seconds": seconds})
 
 

@@ -69,28 +69,28 @@ class View:
 
         Sizes of several parameters add up as squares.
         """
-        wrong, told = self.wrongs[0], self.diagnosis.get("sensitivity") or []
+        wrong, sensitivity = self.wrongs[0], self.diagnosis.get("sensitivity") or []
         sizes = {
             p.name: p.null
             for p in EFFECTS[wrong["effect"]].parameters
             if p.name in wrong["parameters"] and not p.shape
         }
-        if not told or not sizes or wrong["effect"] in RARELY:
+        if not sensitivity or not sizes or wrong["effect"] in RARELY:
             return None
-        here = [
-            one
-            for one in told
-            if one["effect"] == wrong["effect"]
-            and one["location"] in wrong["also"]
-            and one["parameter"] in sizes
+        matching = [
+            entry
+            for entry in sensitivity
+            if entry["effect"] == wrong["effect"]
+            and entry["location"] in wrong["also"]
+            and entry["parameter"] in sizes
         ]
         # what no possible size would show is in no list
         return bool(
             np.hypot.reduce(
                 [
-                    (wrong["parameters"][one["parameter"]] - sizes[one["parameter"]])
-                    / one["change"]
-                    for one in here
+                    (wrong["parameters"][entry["parameter"]] - sizes[entry["parameter"]])
+                    / entry["change"]
+                    for entry in matching
                 ]
             )
             >= 1.0

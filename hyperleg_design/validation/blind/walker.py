@@ -122,12 +122,12 @@ class Walker:
         return plant, simulate_walking(plant, self.chain, stand, duration, self.recorder.rate, seed)
 
     def log(
-        self, made: tuple[WalkingPlant, WalkingTrace], seed: int, name: str, **metadata: Any
+        self, run: tuple[WalkingPlant, WalkingTrace], seed: int, name: str, **metadata: Any
     ) -> Log | None:
-        """A log, or None where the robot fell.
+        """Record a run as a log; None where the robot fell.
 
         Args:
-            made: the plant and the trace of its run.
+            run: the plant and the trace of its run.
             seed: of the recording.
             name: of the log.
             metadata: of the log.
@@ -135,7 +135,7 @@ class Walker:
         Returns:
             The log, or None.
         """
-        plant, trace = made
+        plant, trace = run
         return (
             None
             if trace.fell

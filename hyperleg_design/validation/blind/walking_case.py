@@ -63,13 +63,13 @@ def walking_case(plan: Plan) -> Case:
     wrongs: list[Wrong] = []
     for effect, wanted in zip(plan.effects, plan.multiples, strict=True):
         wrongs.append(_sized(walker, effect, wanted, rng, [w.location for w in wrongs]))
-    made = None
+    recorded = None
     for _ in range(MOTIONS):
-        if (made := _recorded(walker, plan, wrongs, rng)) is not None:
+        if (recorded := _recorded(walker, plan, wrongs, rng)) is not None:
             break
-    if made is None:
+    if recorded is None:
         raise RuntimeError("the robot fell in every recording, however small the effect")
-    logs, wrongs, reached = made
+    logs, wrongs, reached = recorded
     references: list[Log] = []
     if plan.references:
         walker = replace(walker, day=of_day(robot, life, rng))

@@ -232,13 +232,13 @@ def _excess(
     model: mujoco.MjModel, robot: Robot, wrong: Wrong, build: int, references: bool
 ) -> dict[str, float]:
     """Friction over what references show, or over what the file says where there are none."""
-    own, _ = built(robot, build)
+    built_model, _ = built(robot, build)
     name = "torque" if wrong.what == "rough" else "damping"
-    there, told = (
+    actual, declared = (
         (m.dof_frictionloss if name == "torque" else m.dof_damping)[wrong.place]
-        for m in (own, model)
+        for m in (built_model, model)
     )
-    return {name: float(wrong.size * there - (there if references else told))}
+    return {name: float(wrong.size * actual - (actual if references else declared))}
 
 
 def _merged(faults: tuple[Fault, ...]) -> tuple[Fault, ...]:

@@ -160,7 +160,7 @@ def faults(model: DoublePendulum) -> dict[str, Declared]:
     Returns:
         The declarations by name.
     """
-    found = {"nothing": Declared(())}
+    declarations = {"nothing": Declared(())}
     for k, joint in enumerate(JOINTS):
         places = (joint,)
         columns = (f"{COMMAND}/{joint}", f"{MEASURED}/{joint}")
@@ -172,38 +172,40 @@ def faults(model: DoublePendulum) -> dict[str, Declared]:
                 tuple((effect, places) for effect in WEAK),
             )
             scale = partial(_scaled, factor=factor, columns=columns)
-            found[f"torque_{label}_{joint}"] = Declared((fault,), test=scale)
+            declarations[f"torque_{label}_{joint}"] = Declared((fault,), test=scale)
         shift = partial(_shifted, column=f"position/{joint}")
         offset = Fault("encoder_offset", places, {"offset": ENCODER})
-        found[f"encoder_{joint}"] = Declared((offset,), test=shift)
-        found[f"friction_{joint}"] = Declared(
+        declarations[f"encoder_{joint}"] = Declared((offset,), test=shift)
+        declarations[f"friction_{joint}"] = Declared(
             (_friction(joint, model.coulomb[k]),), partial(_frictionless, joints=places)
         )
     both = tuple(_friction(joint, model.coulomb[k]) for k, joint in enumerate(JOINTS))
-    found["friction_both"] = Declared(both, partial(_frictionless, joints=JOINTS))
-    found["standing_friction_both"] = Declared((), partial(_frictionless, joints=JOINTS))
-    found["standing_rotors"] = Declared((), DoublePendulum.without_rotors)
+    declarations["friction_both"] = Declared(both, partial(_frictionless, joints=JOINTS))
+    declarations["standing_friction_both"] = Declared((), partial(_frictionless, joints=JOINTS))
+    declarations["standing_rotors"] = Declared((), DoublePendulum.without_rotors)
     tip = {"payload": {"lower": [TIP_MASS, 0.0, 0.0, -model.length[1]]}}
 
-    def told(log: Recording) -> Recording:
+    def with_tip(log: Recording) -> Recording:
         return log.declared(**tip)
 
-    found["tip_missing"] = Declared(
-        (_payload(TIP_MASS),), DoublePendulum.without_tip, reference=told
+    declarations["tip_missing"] = Declared(
+        (_payload(TIP_MASS),), DoublePendulum.without_tip, reference=with_tip
     )
-    found["tip_twice"] = Declared((_payload(-TIP_MASS),), test=told)
+    declarations["tip_twice"] = Declared((_payload(-TIP_MASS),), test=with_tip)
     rotors = tuple(
         Fault("rotor_inertia", (joint,), {"inertia": model.armature[k]})
         for k, joint in enumerate(JOINTS)
     )
-    found["rotors"] = Declared(rotors, DoublePendulum.without_rotors)
+    declarations["rotors"] = Declared(rotors, DoublePendulum.without_rotors)
     for milliseconds in (10, 20):
         seconds = milliseconds / 1e3
         late = Fault("command_delay", ("robot",), {"delay": seconds})
-        found[f"delay_{milliseconds}ms"] = Declared((late,), test=partial(_early, seconds=seconds))
+        declarations[f"delay_{milliseconds}ms"] = Declared(
+            (late,), test=partial(_early, seconds=seconds)
+        )
     gone = tuple(Fault("coulomb_friction", (j,), {}, _like_friction(j)) for j in JOINTS)
-    found |= {name: Declared(gone) for name in COMPENSATION}
-    return found
+    declarations |= {name: Declared(gone) for name in COMPENSATION}
+    return declarations
 
 
 def _like_friction(joint: str) -> tuple[tuple[str, tuple[str, ...]], ...]:

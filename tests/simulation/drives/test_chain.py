@@ -47,7 +47,7 @@ def test_without_alterations_it_is_controller_inverse_and_clip(design, state):
 
 
 class _Everything(Live):
-    kept = ("count_of_steps",)
+    hidden_state = ("count_of_steps",)
 
     def prepare(self):
         self.count_of_steps = np.zeros(self.count)

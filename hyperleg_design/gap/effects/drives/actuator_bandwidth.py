@@ -29,7 +29,7 @@ SOURCE = "torque loops of 15-100 Hz, 2-10 ms, on series-elastic and servo drives
 class _Lagging(MotorHooks):
     """Exact for a command that is held for a simulation step."""
 
-    kept: ClassVar[tuple[str, ...]] = ("given", "begun")
+    hidden_state: ClassVar[tuple[str, ...]] = ("given", "begun")
     time_constant: np.ndarray
 
     def prepare(self) -> None:

@@ -79,25 +79,29 @@ class Cogging(MotorTorque):
 
     @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """As many more periods a turn of the joint as its gear has."""
-        found = super().usual(location, subject)
-        found[2] *= max(abs(float(subject.gear[subject.motors.index(location)])), 1.0)
-        return found
+        """Usual values, with the order times the motor's gear: so many more periods of the rotor's
+        cogging fall on a turn of the joint.
+        """
+        typical = super().usual(location, subject)
+        typical[2] *= max(abs(float(subject.gear[subject.motors.index(location)])), 1.0)
+        return typical
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Amplitudes up to the torque that the motor is made for."""
-        found = super().bounds(location, subject)
-        most = min(found[1, 0], self.strength(location, subject))
-        found[0, :2], found[1, :2] = -most, most
-        return found
+        """Usual bounds, with amplitudes up to the torque that the motor is made for."""
+        bounds = super().bounds(location, subject)
+        largest = min(bounds[1, 0], self.strength(location, subject))
+        bounds[0, :2], bounds[1, :2] = -largest, largest
+        return bounds
 
     @override
     def steps(self, location: str, subject: Subject) -> np.ndarray:
-        """Those of the order turn the phase little over a radian of the joint."""
-        found = super().steps(location, subject)
-        found[2] = min(found[2], 0.05 / subject.motor_over_joint(subject.motors.index(location)))
-        return found
+        """Usual steps, with one of the order that changes the phase little over a radian of the
+        joint.
+        """
+        steps = super().steps(location, subject)
+        steps[2] = min(steps[2], 0.05 / subject.motor_over_joint(subject.motors.index(location)))
+        return steps
 
     @override
     def derived(

@@ -37,7 +37,7 @@ COMMAND = 0.5
 
 
 class CommandDelay(Effect):
-    """Drives follow what they were told some time ago: all of them (`robot`), or one motor.
+    """Drives follow commands of some time ago: all of them (`robot`), or one motor.
 
     What comes late is the torque that the controller asked for (`late` 0), so that the whole loop
     is: the torque is that of the targets and of the measured state of then. Or it is the targets
@@ -86,15 +86,15 @@ class CommandDelay(Effect):
 
     @override
     def place(self, location: str, subject: Subject) -> str:
-        """The one that is meant; the only motor is the robot."""
+        """The location that a name means; the only motor is the robot."""
         return ROBOT if (location,) == driven_motors(subject) else super().place(location, subject)
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         delay, late = np.atleast_2d(np.asarray(values, float)).T
         targets = late >= TARGETS
-        by_targets = targets.any() and _told(signals, location)
-        moved = _moved(signals, np.where(targets, delay, 0.0)) if by_targets else None
+        by_targets = targets.any() and _targets_are_known(signals, location)
+        moved = _stale_target_torque(signals, np.where(targets, delay, 0.0)) if by_targets else None
         changes, control = {}, {}
         for motor, name in enumerate(signals.subject.motors):
             if location not in (ROBOT, name) or not is_commanded(signals, motor):
@@ -131,33 +131,33 @@ class CommandDelay(Effect):
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
         """A few delays, of commands and, where they are known, of targets."""
-        ways = (0.0, 1.0) if _told(signals, location) else (0.0,)
+        ways = (0.0, 1.0) if _targets_are_known(signals, location) else (0.0,)
         return np.array([[delay, way] for way in ways for delay in (0.003, 0.01, 0.025, 0.06)])
 
 
-def _told(signals: Signals, location: str) -> bool:
-    """Whether targets are known that can come late by themselves: to one motor only where it has
-    its joint to itself.
+def _targets_are_known(signals: Signals, location: str) -> bool:
+    """Whether the targets that can be late by themselves are known: those of one motor only where
+    it drives a joint alone.
     """
     return signals.target is not None and (location == ROBOT or signals.subject.one_to_one)
 
 
-def _moved(signals: Signals, delay: np.ndarray) -> np.ndarray:
-    """Joint torque that controllers ask for more while their targets are old `(k, t, n)` [Nm]; 0
-    where no target or gain is known.
+def _stale_target_torque(signals: Signals, delay: np.ndarray) -> np.ndarray:
+    """Additional joint torque that controllers ask for because their targets are old `(k, t, n)`
+    [Nm]; 0 where a target or a gain is unknown.
     """
     assert signals.target is not None
     stiffness = np.where(signals.subject.passive, 0.0, np.nan_to_num(signals.subject.gains[:, 0]))
-    found = np.zeros((len(delay), *signals.target.shape))
+    torque = np.zeros((len(delay), *signals.target.shape))
     for joint in np.flatnonzero(stiffness).tolist():
         target = signals.target[:, joint]
         if np.isfinite(target).any():
-            found[..., joint] = stiffness[joint] * (delayed(target, delay, signals.step) - target)
-    return found
+            torque[..., joint] = stiffness[joint] * (delayed(target, delay, signals.step) - target)
+    return torque
 
 
-class _Past:
-    """What was told in the last steps, to be had some time later."""
+class _DelayLine:
+    """Delays values by the times of each simulation, interpolated between steps."""
 
     def __init__(self, delay: Any, count: int, step: float, places: Sequence[int]) -> None:
         steps = np.broadcast_to(np.maximum(np.asarray(delay, float), 0.0) / step, (count,))
@@ -167,17 +167,17 @@ class _Past:
         self.values = np.zeros((count, int(self.whole.max(initial=0)) + 2, len(self.places)))
         self.begun = np.zeros(count)
 
-    def told(self, values: np.ndarray) -> np.ndarray:
-        """Take in what is told now, and give what was told then `(n, places)`.
+    def delayed(self, values: np.ndarray) -> np.ndarray:
+        """Store the values of this step, and return those of `delay` seconds ago.
 
         Args:
-            values: told now, `(n, all places)`.
+            values: of this step `(n, all places)`.
 
         Returns:
-            What was told then, `(n, places)`.
+            The delayed values `(n, places)`.
         """
         fresh = values[:, self.places]
-        # Before the first one the same is taken to have been told all the time.
+        # The values before the first step are taken to be those of the first step.
         self.values[self.begun == 0] = fresh[self.begun == 0][:, None]
         self.begun[:] = 1.0
         self.values[:, 1:] = self.values[:, :-1].copy()
@@ -189,25 +189,30 @@ class _Past:
 
 
 class _Late(Live):
-    kept: ClassVar[tuple[str, ...]] = ("commands", "commands_begun", "targets", "targets_begun")
+    hidden_state: ClassVar[tuple[str, ...]] = (
+        "commands",
+        "commands_begun",
+        "targets",
+        "targets_begun",
+    )
 
     alteration: LateCommand
 
     def prepare(self) -> None:
-        one = self.alteration
-        motors = [self.machine.motor(name) for name in one.motors]
-        joints = [self.machine.joint(name) for name in one.joints]
-        self.of_motors = _Past(one.delay, self.count, self.step, motors)
-        self.of_joints = _Past(one.target_delay, self.count, self.step, joints)
+        late = self.alteration
+        motors = [self.machine.motor(name) for name in late.motors]
+        joints = [self.machine.joint(name) for name in late.joints]
+        self.of_motors = _DelayLine(late.delay, self.count, self.step, motors)
+        self.of_joints = _DelayLine(late.target_delay, self.count, self.step, joints)
         self.commands, self.commands_begun = self.of_motors.values, self.of_motors.begun
         self.targets, self.targets_begun = self.of_joints.values, self.of_joints.begun
 
     def command(self, command: np.ndarray, tick: Tick) -> np.ndarray:
-        command[:, self.of_motors.places] = self.of_motors.told(command)
+        command[:, self.of_motors.places] = self.of_motors.delayed(command)
         return command
 
     def target(self, target: np.ndarray, tick: Tick) -> np.ndarray:
-        target[:, self.of_joints.places] = self.of_joints.told(target)
+        target[:, self.of_joints.places] = self.of_joints.delayed(target)
         return target
 
 

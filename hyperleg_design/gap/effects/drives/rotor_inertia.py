@@ -103,10 +103,10 @@ class RotorInertia(MotorTorque):
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """No less than no rotor at all."""
-        found = super().bounds(location, subject)
-        found[0] = -subject.rotor_inertia[subject.motors.index(location)]
-        return found
+        """Usual bounds, but no less inertia than takes all of the model's rotor away."""
+        bounds = super().bounds(location, subject)
+        bounds[0] = -subject.rotor_inertia[subject.motors.index(location)]
+        return bounds
 
 
 @dataclass(frozen=True, eq=False)

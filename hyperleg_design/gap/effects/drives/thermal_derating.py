@@ -125,7 +125,7 @@ def rated_torque(subject: Subject, motor: int) -> float:
 class _Derated(MotorHooks):
     """Loses torque with temperature: measured, or modelled from cold."""
 
-    kept: ClassVar[tuple[str, ...]] = ("rise",)
+    hidden_state: ClassVar[tuple[str, ...]] = ("rise",)
     coefficient: np.ndarray
     rated: float
 

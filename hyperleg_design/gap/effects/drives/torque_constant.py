@@ -150,10 +150,10 @@ class TorqueConstant(MotorEffect):
         motor = signals.subject.motors.index(location)
         scale, reading = np.atleast_2d(np.asarray(values, float)).T[..., None]
         lost = (1.0 - scale) * (given(signals, motor) - braked(signals, motor))
-        found = at_motor(signals, motor, lost)
-        if reading.any() and _told_twice(signals, motor):
-            found |= before_measurement(signals, {motor: reading * lost})
-        return found
+        trace = at_motor(signals, motor, lost)
+        if reading.any() and _is_commanded_and_measured(signals, motor):
+            trace |= before_measurement(signals, {motor: reading * lost})
+        return trace
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
@@ -167,9 +167,9 @@ class TorqueConstant(MotorEffect):
         """Another motor; and a wrong reading, where the log tells both what was asked for and what
         was given.
         """
-        both = _told_twice(signals, signals.subject.motors.index(location))
+        both = _is_commanded_and_measured(signals, signals.subject.motors.index(location))
         return np.array([[1.0, 0.0], [1.0, 1.0]] if both else [[1.0, 0.0]])
 
 
-def _told_twice(signals: Signals, motor: int) -> bool:
+def _is_commanded_and_measured(signals: Signals, motor: int) -> bool:
     return is_measured(signals, motor) and is_commanded(signals, motor)

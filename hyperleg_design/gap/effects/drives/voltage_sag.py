@@ -135,8 +135,8 @@ class VoltageSag(Effect):
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         limits, torque, speed = np.moveaxis(np.asarray(values, float), -1, 0)
         ratios = np.array([subject.motor_over_joint(motor) for motor in range(len(subject.motors))])
-        made = motor_strengths(subject), ratios, reference_power(subject)
-        return WeakBattery(limits, torque, speed, *made)
+        drives = motor_strengths(subject), ratios, reference_power(subject)
+        return WeakBattery(limits, torque, speed, *drives)
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
@@ -150,27 +150,31 @@ class VoltageSag(Effect):
 
 
 def _lines(signals: Signals) -> list[list[float]]:
-    """`limits`, `torque` and `speed` of the line through what each measured motor gives at most
-    `(3,)`; empty where none falls short.
+    """Torque-speed lines of measured motors that give less than their limits allow, by least
+    squares: `limits`, `torque` and `speed` of each.
     """
-    subject, found = signals.subject, []
+    subject, lines = signals.subject, []
     for motor in range(len(subject.motors)):
         if not is_commanded(signals, motor) or signals.measured is None:
             continue
         torque = signals.measured[:, motor]
         if not np.isfinite(torque).any():
             continue
-        way = np.sign(torque)
-        short = (limited(signals, motor, commanded(signals, motor)) - torque) * way
-        strength, usual = motor_strength(subject, motor), float(np.nanmedian(np.abs(short)))
-        far = np.flatnonzero(short > max(FAR * usual, FALLS_SHORT * strength))
-        if len(far) < FEWEST:
+        direction = np.sign(torque)
+        shortfall = (limited(signals, motor, commanded(signals, motor)) - torque) * direction
+        strength, usual = motor_strength(subject, motor), float(np.nanmedian(np.abs(shortfall)))
+        limited_rows = np.flatnonzero(shortfall > max(FAR * usual, FALLS_SHORT * strength))
+        if len(limited_rows) < FEWEST:
             continue
-        lines = np.stack([1 - missing(signals), -signals.motor_speed[:, motor] * way], -1)[far]
-        (level, slope), *_ = np.linalg.lstsq(np.nan_to_num(lines), np.abs(torque[far]) / strength)
+        columns = np.stack([1 - missing(signals), -signals.motor_speed[:, motor] * direction], -1)[
+            limited_rows
+        ]
+        (level, slope), *_ = np.linalg.lstsq(
+            np.nan_to_num(columns), np.abs(torque[limited_rows]) / strength
+        )
         if level > 0 and slope > 0:
-            found.append([1 / level, 0.0, level / (slope * subject.motor_over_joint(motor))])
-    return found
+            lines.append([1 / level, 0.0, level / (slope * subject.motor_over_joint(motor))])
+    return lines
 
 
 def missing(signals: Signals) -> np.ndarray:

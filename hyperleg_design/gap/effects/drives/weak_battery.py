@@ -39,7 +39,7 @@ def modelled(
 
 
 class _Weak(Live):
-    kept: ClassVar[tuple[str, ...]] = ("lost", "full")
+    hidden_state: ClassVar[tuple[str, ...]] = ("lost", "full")
 
     alteration: WeakBattery
 

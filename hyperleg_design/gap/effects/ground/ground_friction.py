@@ -98,13 +98,13 @@ def ground_trace(
     feet = ground.footings(signals)
     if not feet:
         return {}
-    place, one = signals.subject.feet.index(location), np.ones(1)
-    found = np.zeros((len(friction), len(signals.time), 3 * len(feet)))
-    own = feet[place]
-    found[..., 3 * place : 3 * place + 3] = own.ground(friction, compliance, damping) - own.ground(
-        one, one, one
-    )
-    return {"ground": found}
+    place, unscaled = signals.subject.feet.index(location), np.ones(1)
+    trace = np.zeros((len(friction), len(signals.time), 3 * len(feet)))
+    foot = feet[place]
+    trace[..., 3 * place : 3 * place + 3] = foot.ground(
+        friction, compliance, damping
+    ) - foot.ground(unscaled, unscaled, unscaled)
+    return {"ground": trace}
 
 
 @dataclass(frozen=True, eq=False)

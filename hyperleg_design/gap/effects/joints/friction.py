@@ -42,12 +42,14 @@ class ModelledFriction(JointTorque):
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """No larger than the torque that the joint is made for, nor less than none."""
-        found = super().bounds(location, subject)
-        found[1, 0] = min(found[1, 0], self.strength(location, subject))
+        """Usual bounds, up to the torque that the joint is made for, and down to no friction at
+        all.
+        """
+        bounds = super().bounds(location, subject)
+        bounds[1, 0] = min(bounds[1, 0], self.strength(location, subject))
         if self.described:
-            found[0, 0] = -self.modelled(subject)[subject.joints.index(location)]
-        return found
+            bounds[0, 0] = -self.modelled(subject)[subject.joints.index(location)]
+        return bounds
 
     @override
     def change_bounds(self, location: str, subject: Subject) -> np.ndarray:
@@ -59,7 +61,7 @@ class ModelledFriction(JointTorque):
 
 
 class _Friction(Live):
-    kept: ClassVar[tuple[str, ...]] = ("before", "begun")
+    hidden_state: ClassVar[tuple[str, ...]] = ("before", "begun")
 
     alteration: JointFriction
 
@@ -73,13 +75,13 @@ class _Friction(Live):
         self.before, self.begun = np.zeros((self.count, len(machine.joints))), np.zeros(self.count)
 
     def joint_damping(self, tick: Tick) -> np.ndarray:
-        one, velocity = self.alteration, tick.velocity[:, self.place]
-        size = one.coulomb + one.breakaway * np.exp(-((velocity / one.speed) ** 2))
-        if np.any(one.share):
-            size = size + one.share * np.abs(self._transmitted(tick))
-        out = np.zeros_like(tick.velocity)
-        out[:, self.place] = resistance(size, velocity, one.width) + one.viscous
-        return out
+        friction, velocity = self.alteration, tick.velocity[:, self.place]
+        size = friction.coulomb + friction.breakaway * np.exp(-((velocity / friction.speed) ** 2))
+        if np.any(friction.share):
+            size = size + friction.share * np.abs(self._transmitted(tick))
+        damping = np.zeros_like(tick.velocity)
+        damping[:, self.place] = resistance(size, velocity, friction.width) + friction.viscous
+        return damping
 
     def _transmitted(self, tick: Tick) -> np.ndarray:
         """Torque that reaches the joint `(n,)` [Nm]: less what turned the rotors in the step

@@ -80,20 +80,20 @@ class InertialEffect(Effect):
         return self.added(own, np.atleast_2d(np.asarray(values, float)))
 
     def _traces(self, signals: Signals, location: str, added: np.ndarray) -> dict[str, np.ndarray]:
-        """Of inertial parameters added to a link `(k, 10)`."""
+        """Traces by residual of inertial parameters `(k, 10)` that are added to a link."""
         tree = signals.subject.tree
         link = tree.link(location)
-        found = {}
+        traces = {}
         if tree.link_joint[link] != BASE:
-            found["motion"] = np.einsum(
+            traces["motion"] = np.einsum(
                 "tnp,kp->ktn", regressor.link_regressor(signals, tree.links[link]), added
             )
         if "base" in signals.residual:
             # what the ground must give more, it shows
-            found["base"] = np.einsum(
+            traces["base"] = np.einsum(
                 "trp,kp->ktr", regressor.base_regressor(signals, tree.links[link]), added
             )
-        return found
+        return traces
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:

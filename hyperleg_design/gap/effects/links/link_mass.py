@@ -58,10 +58,10 @@ class LinkMass(OwnInertiaEffect):
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Some of the link is left."""
-        found = super().bounds(location, subject)
-        found[0, 0] = max(found[0, 0], least_mass(subject, location))
-        return found
+        """Usual bounds, but no less mass than leaves some of the link."""
+        bounds = super().bounds(location, subject)
+        bounds[0, 0] = max(bounds[0, 0], least_mass(subject, location))
+        return bounds
 
     @override
     def size_odds(

@@ -84,31 +84,31 @@ class Payload(MomentsEffect):
         """A share of the mass that moves with the link, anywhere along the link: its own centre of
         mass says how far it reaches from the joint, which is where loads hang least.
         """
-        usual = super().usual(location, subject)
-        usual[0] = max(SHARE * carried_mass(subject, location), 0.01)
+        typical = super().usual(location, subject)
+        typical[0] = max(SHARE * carried_mass(subject, location), 0.01)
         own = subject.tree.link_inertial[subject.tree.link(location)]
         if own[0] > 0:
-            usual[1:4] = np.hypot(usual[1:4], own[1:4] / own[0])
-        return usual
+            typical[1:4] = np.hypot(typical[1:4], own[1:4] / own[0])
+        return typical
 
     @override
     def example(self, location: str, subject: Subject, size: float = 1.0) -> np.ndarray:
-        """At half as far again from the link's origin as its own centre of mass; a load at a
-        joint's axis is hardly felt.
+        """With its centre of mass 1.5 times as far from the link's origin as the link's own; a load
+        at a joint's axis is hardly felt.
         """
-        found = super().example(location, subject, size)
-        own = subject.tree.link_inertial[subject.tree.link(location)]
-        if own[0] > 0:
-            found[1:4] = np.clip(1.5 * own[1:4] / own[0], -1.0, 1.0)
-            found[4] = 0.0
-        return found
+        values = super().example(location, subject, size)
+        link_inertial = subject.tree.link_inertial[subject.tree.link(location)]
+        if link_inertial[0] > 0:
+            values[1:4] = np.clip(1.5 * link_inertial[1:4] / link_inertial[0], -1.0, 1.0)
+            values[4] = 0.0
+        return values
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Some of the link is left."""
-        found = super().bounds(location, subject)
-        found[0, 0] = max(found[0, 0], least_mass(subject, location))
-        return found
+        """Usual bounds, but no less mass than leaves some of the link."""
+        bounds = super().bounds(location, subject)
+        bounds[0, 0] = max(bounds[0, 0], least_mass(subject, location))
+        return bounds
 
     @override
     def odds(self, location: str, subject: Subject, values: np.ndarray) -> float:

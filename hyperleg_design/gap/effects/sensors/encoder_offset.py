@@ -68,13 +68,13 @@ class EncoderOffset(JointEffect):
         offset = np.atleast_2d(np.asarray(values, float))[:, 0]
         turns = signals.subject.tree.hinge[joint]
         powers = _waves(offset) if turns else np.stack([offset, offset**2], -1)
-        found = {}
+        trace = {}
         for residual_name, (rows, parts) in _basis(signals, joint).items():
             count = len(signals.subject.joints) if residual_name == "motion" else 6
-            found[residual_name] = np.zeros((len(offset), len(signals.time), count))
-            found[residual_name][..., rows] = np.tensordot(powers, parts, 1)
-        found["motion"][..., joint] -= signals.subject.spring[joint] * offset[:, None]
-        return found
+            trace[residual_name] = np.zeros((len(offset), len(signals.time), count))
+            trace[residual_name][..., rows] = np.tensordot(powers, parts, 1)
+        trace["motion"][..., joint] -= signals.subject.spring[joint] * offset[:, None]
+        return trace
 
 
 def _waves(offset: np.ndarray) -> np.ndarray:
@@ -86,24 +86,27 @@ def _waves(offset: np.ndarray) -> np.ndarray:
 
 @memoized
 def _basis(signals: Signals, joint: int) -> Basis:
-    """By residual: rows that an offset changes, and how, in the functions of the offset
-    `(functions, t, rows)`.
+    """By residual: the rows that an offset changes, and their coefficients of the functions of the
+    offset `(functions, t, rows)`.
     """
     hinge = bool(signals.subject.tree.hinge[joint])
     nodes = 2 * np.pi / NODES * np.arange(1, NODES) if hinge else np.array([-0.1, 0.1])
     matrix = np.linalg.inv(_waves(nodes) if hinge else np.stack([nodes, nodes**2], -1))
-    here = as_logged(signals)
+    logged = as_logged(signals)
     shifts = []
     for node in nodes:
         position = signals.position.copy()
         position[:, joint] -= node
-        there = needed(signals, position, rotors=False)
+        shifted = needed(signals, position, rotors=False)
         shifts.append(
-            {residual_name: there[residual_name] - here[residual_name] for residual_name in here}
+            {
+                residual_name: shifted[residual_name] - logged[residual_name]
+                for residual_name in logged
+            }
         )
-    found = {}
-    for residual_name in here:
+    basis = {}
+    for residual_name in logged:
         differences = np.stack([shift[residual_name] for shift in shifts])
         rows = np.flatnonzero(np.nanmax(np.abs(differences), (0, 1)) > 1e-12)
-        found[residual_name] = (rows, np.tensordot(matrix, differences[..., rows], 1))
-    return found
+        basis[residual_name] = (rows, np.tensordot(matrix, differences[..., rows], 1))
+    return basis

@@ -86,14 +86,14 @@ class ImuBias(Effect):
         needed = rigid.inverse_dynamics(subject, *motion, base)
         wrench = rigid.base_wrench(subject, *motion, base) if "base" in signals.residual else None
         rows, base_rows = np.zeros((len(values), *needed.shape)), []
-        for number, one in enumerate(values):
-            spin = base.angular_velocity - (subject.imu_rotation @ one[:3] if by_gyro else 0.0)
+        for row, bias in enumerate(values):
+            spin = base.angular_velocity - (subject.imu_rotation @ bias[:3] if by_gyro else 0.0)
             force = base.specific_force
             if by_accelerometer:
-                force = force - subject.imu_rotation @ one[3:]
+                force = force - subject.imu_rotation @ bias[3:]
                 force = force + centripetal(base.angular_velocity) - centripetal(spin)
             true = dataclasses.replace(base, angular_velocity=spin, specific_force=force)
-            rows[number] = rigid.inverse_dynamics(subject, *motion, true) - needed
+            rows[row] = rigid.inverse_dynamics(subject, *motion, true) - needed
             if wrench is not None:
                 base_rows.append(rigid.base_wrench(subject, *motion, true) - wrench)
         return {"motion": rows} | ({"base": np.stack(base_rows)} if base_rows else {})

@@ -178,11 +178,11 @@ def stretch(
     if stiffening is not None and stiffening.any():
         bend = stiffening / signals.subject.motor_over_joint(motor)
         stiff = bend > 0
-        moved[stiff] = _eased(moved[stiff], bend[stiff, None])
+        moved[stiff] = _stiffened(moved[stiff], bend[stiff, None])
     return moved
 
 
-def _eased(straight: np.ndarray, bend: np.ndarray) -> np.ndarray:
+def _stiffened(straight: np.ndarray, bend: np.ndarray) -> np.ndarray:
     """Stretch s of a belt that would stretch by `straight` were it not stiffening: s (1 + (bend
     s)^2) = straight.
     """
@@ -198,7 +198,8 @@ def trace(
     seen: np.ndarray | None = None,
     behind: np.ndarray | None = None,
 ) -> dict[str, np.ndarray]:
-    """What stretch leaves in the residuals of motion and transmission, see above.
+    """Compute what a stretch of the belt leaves in the residuals of motion and transmission, by the
+    equations of this module.
 
     Args:
         signals: a conditioned log.
@@ -212,9 +213,9 @@ def trace(
     """
     at_joints = 1 - side[:, None]
     inertia = at_joints * rotor(signals.subject, motor)
-    found = at_motor(signals, motor, inertia * second_derivative(moved, signals.step))
-    told = first_derivative(moved if seen is None else seen, signals.step)
-    found |= turned(signals, motor, at_joints * told)
+    residual = at_motor(signals, motor, inertia * second_derivative(moved, signals.step))
+    stretch_rate = first_derivative(moved if seen is None else seen, signals.step)
+    residual |= turned(signals, motor, at_joints * stretch_rate)
     if side.any():
         subject = signals.subject
         share = subject.motor_from_joint[motor]
@@ -229,12 +230,12 @@ def trace(
             subject, position, velocity, acceleration, signals.base, rotors=False, joints=limbs
         )
         beyond -= _rotorless(signals)[:, limbs]
-        found["motion"][rows[:, None], :, np.array(limbs)] += (
+        residual["motion"][rows[:, None], :, np.array(limbs)] += (
             side[rows, None, None] * beyond
         ).swapaxes(1, 2)
         if behind is not None and (rubbing := (side >= CHOSEN) & (behind >= CHOSEN)).any():
-            found["motion"][rubbing] += _rubbed(signals, moved[rubbing], share)
-    return found
+            residual["motion"][rubbing] += _friction_change(signals, moved[rubbing], share)
+    return residual
 
 
 @memoized
@@ -244,33 +245,35 @@ def _rotorless(signals: Signals) -> np.ndarray:
     return rigid.inverse_dynamics(signals.subject, *motion, signals.base, rotors=False)
 
 
-def _rubbed(signals: Signals, moved: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Nominal friction of joints that turn round later than their rotors, less that of the logged
-    motion `(k, t, n)` [Nm].
+def _friction_change(signals: Signals, moved: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Change of the joints' nominal friction because they reverse later than their rotors `(k, t,
+    n)` [Nm].
     """
     subject = signals.subject
-    found = np.zeros((len(moved), *signals.position.shape))
+    torque = np.zeros((len(moved), *signals.position.shape))
     own = np.flatnonzero(share)
-    way = np.nan_to_num(signals.position[:, own])
-    turns = _dragged(way - moved[..., None] * share[own]) - _dragged(way[None])
-    rate = first_derivative(moved, signals.step)[..., None] * share[own]
-    found[..., own] = subject.coulomb[own] * turns - subject.viscous[own] * rate
-    return found
+    angle = np.nan_to_num(signals.position[:, own])
+    sign_change = _dahl_friction(angle - moved[..., None] * share[own]) - _dahl_friction(
+        angle[None]
+    )
+    speed_change = first_derivative(moved, signals.step)[..., None] * share[own]
+    torque[..., own] = subject.coulomb[own] * sign_change - subject.viscous[own] * speed_change
+    return torque
 
 
-def _dragged(way: np.ndarray) -> np.ndarray:
-    """Friction over its size, of bristles that bend along ways `(k, t, j)`: it turns over within
-    `BRISTLES`, and stays at rest (Dahl).
+def _dahl_friction(path: np.ndarray) -> np.ndarray:
+    """Dahl friction over its Coulomb torque, along paths `(k, t, j)` [rad]: it reverses within a
+    displacement of `BRISTLES`, and stays as it is at rest.
     """
-    found = np.zeros_like(way)
-    for row, column in np.ndindex(way.shape[0], way.shape[2]):
-        found[row, 1:, column] = _bent(np.diff(way[row, :, column]))
-    return found
+    deflection = np.zeros_like(path)
+    for row, column in np.ndindex(path.shape[0], path.shape[2]):
+        deflection[row, 1:, column] = _dahl_response(np.diff(path[row, :, column]))
+    return deflection
 
 
-def _bent(steps: np.ndarray) -> np.ndarray:
-    """Bristles after each step `(t,)`; on the way to one side z' = (side - z) / `BRISTLES`, so that
-    only turns need a loop.
+def _dahl_response(steps: np.ndarray) -> np.ndarray:
+    """Dahl friction over its Coulomb torque after each step `(t,)`: z' = (side - z) / `BRISTLES`
+    while the joint moves to one side, so that only reversals need a loop.
     """
     moving = np.flatnonzero(steps)
     if not moving.size:
@@ -279,11 +282,11 @@ def _bent(steps: np.ndarray) -> np.ndarray:
     sides = np.sign(steps)[last]
     gone = np.concatenate([[0.0], np.cumsum(np.abs(steps)) / BRISTLES])
     turns = np.concatenate([[0], np.flatnonzero(np.diff(sides)) + 1])
-    keep = np.exp(-np.diff(np.append(gone[turns], gone[-1]))).tolist()
+    remainders = np.exp(-np.diff(np.append(gone[turns], gone[-1]))).tolist()
     begun, state = [], 0.0
-    for side, kept in zip(sides[turns].tolist(), keep, strict=True):
+    for side, remainder in zip(sides[turns].tolist(), remainders, strict=True):
         begun.append(state)
-        state = side + (state - side) * kept
+        state = side + (state - side) * remainder
     run = np.repeat(np.arange(len(turns)), np.diff(np.append(turns, len(steps))))
     return np.asarray(sides + (np.array(begun)[run] - sides) * np.exp(gone[turns][run] - gone[1:]))
 

@@ -33,8 +33,8 @@ def slack(
     coasting: np.ndarray,
     behind: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Where a rotor is in its dead zone, from -play / 2 to play / 2, on its side of M `(k, t)`
-    [rad].
+    """Compute the position of a rotor in its dead zone, from -play / 2 to play / 2, on its side of
+    M `(k, t)` [rad].
 
     Args:
         signals: a conditioned log.
@@ -46,7 +46,7 @@ def slack(
         behind: share of the friction that acts behind the belt `(k,)`, none by default: on a joint
             that is left behind, and not on a rotor that crosses.
     """
-    found = np.zeros((len(play), len(signals.time)))
+    position = np.zeros((len(play), len(signals.time)))
     pushed = cache(lambda: _pushed(signals, motor))
     kicks: dict[bool, list[float]] = {}
     for row, width in enumerate(play):
@@ -62,11 +62,11 @@ def slack(
             beyond = 0.0 if behind is None else float(behind[row])
             part = float(beyond >= CHOSEN) if at_rotor else 1.0 - beyond
             rubbing = _Rubbing.of(signals, motor, at_rotor, part) if part else None
-            way = _bounced(kicks[at_rotor], signals.step, float(width) / 2, bounce, rubbing)
-            found[row] = free * np.array(way)
+            path = _bounced(kicks[at_rotor], signals.step, float(width) / 2, bounce, rubbing)
+            position[row] = free * np.array(path)
         if free < 1:
-            found[row] += (1 - free) * float(width) / 2 * pushed()
-    return found
+            position[row] += (1 - free) * float(width) / 2 * pushed()
+    return position
 
 
 def _pushed(signals: Signals, motor: int) -> np.ndarray:

@@ -80,18 +80,21 @@ class TransmissionElasticity(MotorEffect):
         motor = signals.subject.motors.index(location)
         settings = np.atleast_2d(np.asarray(values, float)).T
         compliance, damping_ratio, side, behind, stiffening = settings
-        needed, told = belt.load(signals, motor), belt.transmitted(signals, motor)
-        moved = belt.stretch(signals, needed, motor, compliance, damping_ratio, stiffening)
+        load, transmitted = belt.load(signals, motor), belt.transmitted(signals, motor)
+        moved = belt.stretch(signals, load, motor, compliance, damping_ratio, stiffening)
         bent = (stiffening > 0) | (behind >= belt.CHOSEN)
         for rubs in (True, False):
             if (mine := bent & (side >= belt.CHOSEN) & ((behind >= belt.CHOSEN) == rubs)).any():
-                own = belt.given(signals, motor, rubs=rubs)
+                given = belt.given(signals, motor, rubs=rubs)
                 moved[mine] = belt.stretch(
-                    signals, own, motor, *(v[mine] for v in (compliance, damping_ratio, stiffening))
+                    signals,
+                    given,
+                    motor,
+                    *(v[mine] for v in (compliance, damping_ratio, stiffening)),
                 )
         seen = None
-        if told is not needed:
-            seen = belt.stretch(signals, told, motor, compliance, damping_ratio, stiffening)
+        if transmitted is not load:
+            seen = belt.stretch(signals, transmitted, motor, compliance, damping_ratio, stiffening)
         return belt.trace(signals, motor, moved, side, seen, behind)
 
     @override
@@ -107,17 +110,17 @@ class TransmissionElasticity(MotorEffect):
 
     @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:
-        """Compliance at which the rotor rings at the usual frequency."""
-        found = super().usual(location, subject)
-        found[0] = self._compliance(RESONANCE, location, subject)
-        return found
+        """Usual values, with the compliance at which the rotor rings at `RESONANCE`."""
+        typical = super().usual(location, subject)
+        typical[0] = self._compliance(RESONANCE, location, subject)
+        return typical
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """No softer than a rotor that rings at half a hertz."""
-        found = super().bounds(location, subject)
-        found[1, 0] = min(found[1, 0], self._compliance(SLOWEST, location, subject))
-        return found
+        """Usual bounds, with no more compliance than that of a rotor that rings at half a hertz."""
+        bounds = super().bounds(location, subject)
+        bounds[1, 0] = min(bounds[1, 0], self._compliance(SLOWEST, location, subject))
+        return bounds
 
     @override
     def fixed(self, values: np.ndarray) -> np.ndarray:

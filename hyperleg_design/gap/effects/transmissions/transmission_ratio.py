@@ -80,17 +80,17 @@ class TransmissionRatio(MotorEffect):
             signals.acceleration @ subject.joint_from_motor[:, motor]
         )
         turning = (1 - side) * (scale**2 - 1.0) + side * (scale - 1.0)
-        found = at_motor(signals, motor, (1.0 - scale) * given(signals, motor) + turning * rotor)
-        found |= turned(signals, motor, (1 - side) * (scale - 1.0) * motor_velocity(signals, motor))
+        trace = at_motor(signals, motor, (1.0 - scale) * given(signals, motor) + turning * rotor)
+        trace |= turned(signals, motor, (1 - side) * (scale - 1.0) * motor_velocity(signals, motor))
         if not side.any():
-            return found
-        found["motion"] = found["motion"] + _other_friction(signals, motor, side * (1 / scale - 1))
+            return trace
+        trace["motion"] = trace["motion"] + _other_friction(signals, motor, side * (1 / scale - 1))
         farther = (1 / scale - 1)[:, 0]
         powers = side * np.stack([farther, farther**2], -1)
-        for residual_name, parts in _elsewhere(signals, motor).items():
+        for residual_name, parts in _displacement_derivatives(signals, motor).items():
             more = np.tensordot(powers, parts, 1)
-            found[residual_name] = found[residual_name] + more if residual_name in found else more
-        return found
+            trace[residual_name] = trace[residual_name] + more if residual_name in trace else more
+        return trace
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
@@ -119,29 +119,33 @@ def _other_friction(signals: Signals, motor: int, farther: np.ndarray) -> np.nda
 
 
 NODE = 0.1
-"""Share by which joints are moved for `_elsewhere`."""
+"""Share by which `_displacement_derivatives` moves joints."""
 
 
 @memoized
-def _elsewhere(signals: Signals, motor: int) -> dict[str, np.ndarray]:
-    """What the motion needs more where a motor's share of it is larger, in that share and its
-    square `(2, t, rows)`, by residual.
+def _displacement_derivatives(signals: Signals, motor: int) -> dict[str, np.ndarray]:
+    """Derivatives of the torque that the motion needs by the share by which a motor moves its
+    joints farther: coefficients of that share and of its square `(2, t, rows)`, by residual.
     """
     subject = signals.subject
     own = np.outer(subject.joint_from_motor[:, motor], subject.motor_from_joint[motor])
-    there = []
+    displaced = []
     for node in (NODE, -NODE):
         moved = (
             values + node * values @ own
             for values in (signals.position, signals.velocity, signals.acceleration)
         )
-        there.append(needed(signals, *moved, rotors=False))
-        there[-1]["motion"] = there[-1]["motion"] + node * (signals.position @ own) * subject.spring
-    found = {}
+        displaced.append(needed(signals, *moved, rotors=False))
+        displaced[-1]["motion"] = (
+            displaced[-1]["motion"] + node * (signals.position @ own) * subject.spring
+        )
+    derivatives = {}
     for residual_name, now in as_logged(signals).items():
-        more, less = there[0][residual_name] - now, there[1][residual_name] - now
-        found[residual_name] = np.stack([(more - less) / (2 * NODE), (more + less) / (2 * NODE**2)])
-    return found
+        more, less = displaced[0][residual_name] - now, displaced[1][residual_name] - now
+        derivatives[residual_name] = np.stack(
+            [(more - less) / (2 * NODE), (more + less) / (2 * NODE**2)]
+        )
+    return derivatives
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,17 +173,17 @@ class _Scaled(Live):
     alteration: ScaledRatio
 
     def prepare(self) -> None:
-        one, place = self.alteration, self.machine.motor(self.alteration.motor)
-        scale = np.asarray(one.scale, float)
+        alteration, place = self.alteration, self.machine.motor(self.alteration.motor)
+        scale = np.asarray(alteration.scale, float)
         # the machine's own M is scaled already
         column = np.asarray(self.machine.joint_from_motor)[..., place] / scale[..., None]
         row = np.asarray(self.machine.motor_from_joint)[..., place, :]
-        share = np.asarray(one.side) * (scale - 1)
-        self.told = share[..., None, None] * (column[..., :, None] * row[..., None, :])
+        share = np.asarray(alteration.side) * (scale - 1)
+        self.reading_shift = share[..., None, None] * (column[..., :, None] * row[..., None, :])
 
     def measured(self, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return tuple(
-            values + (values[..., None, :] @ self.told)[..., 0, :]
+            values + (values[..., None, :] @ self.reading_shift)[..., 0, :]
             for values in (position, velocity)
         )
 

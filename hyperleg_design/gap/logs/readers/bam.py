@@ -25,7 +25,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.gap.logs.log import Log
-from hyperleg_design.gap.logs.readers.source import beside, joint_names, made_log
+from hyperleg_design.gap.logs.readers.source import beside, build_log, joint_names
 
 
 @dataclass(frozen=True)
@@ -111,8 +111,8 @@ def read_bam(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
         raise InputError(
             path.name, "entries", len(entries), "is an empty log: expects at least two entries"
         )
-    said = beside(path, metadata)
-    joint = joint_names(said, [JOINT], path.name)[0]
+    user_metadata = beside(path, metadata)
+    joint = joint_names(user_metadata, [JOINT], path.name)[0]
     data = {
         key: _numbers(entries, key, path.name)
         for key in _NUMBERS
@@ -133,34 +133,38 @@ def read_bam(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
         signals[f"motor_temperature/{joint}"] = data["temp"]
     if "input_volts" in data:
         signals["battery_voltage"] = data["input_volts"]
-    found = _found(content, joint)
-    current, how = _current(content, data)
+    source_metadata = _source_metadata(content, joint)
+    current, remark = _current(content, data)
     if current is not None:
         signals[f"motor_current/{joint}"] = current
-        remarks.append(how)
-    if not found["gains"]:
+        remarks.append(remark)
+    if not source_metadata["gains"]:
         remarks.append(
             f"nothing is known of the drive of {content.get('motor')!r}: say `gains` in a side file"
         )
-    elif "gains" not in said:
+    elif "gains" not in user_metadata:
         remarks.append(
             "gains are worked out from the firmware's gain, the nominal supply and published kt "
             "and R"
         )
     date = re.match(r"\d{4}-\d{2}-\d{2}", path.stem)
-    made_of = (content.get(key) for key in ("motor", "mass", "length"))
-    found["session"] = "_".join(map(str, (*made_of, date[0] if date else path.stem)))
-    return [made_log(path, path.stem, data["timestamp"], signals, found, said, remarks)]
+    setup = (content.get(key) for key in ("motor", "mass", "length"))
+    source_metadata["session"] = "_".join(map(str, (*setup, date[0] if date else path.stem)))
+    return [
+        build_log(
+            path, path.stem, data["timestamp"], signals, source_metadata, user_metadata, remarks
+        )
+    ]
 
 
-def _found(content: Mapping[str, Any], joint: str) -> dict[str, Any]:
+def _source_metadata(content: Mapping[str, Any], joint: str) -> dict[str, Any]:
     known = {
         key: content[key]
         for key in ("mass", "arm_mass", "length", "kp", "vin", "motor", "trajectory", "damping")
         if key in content
     }
-    found: dict[str, Any] = {"base": "fixed", "gains": {}, "extra": known}
-    found["notes"] = (
+    metadata: dict[str, Any] = {"base": "fixed", "gains": {}, "extra": known}
+    metadata["notes"] = (
         f"{known.get('motor')} swings {known.get('mass')} kg at {known.get('length')} m, firmware "
         f"gain {known.get('kp')}"
     )
@@ -170,13 +174,13 @@ def _found(content: Mapping[str, Any], joint: str) -> dict[str, Any]:
     ):
         slope = servo.torque_constant / servo.resistance
         stiffness = slope * content["vin"] * content["kp"] * servo.error_gain
-        found["gains"] = {joint: [stiffness, slope * servo.torque_constant]}
-        found["torque_constant"] = {joint: servo.torque_constant}
-        found["supply"] = {
+        metadata["gains"] = {joint: [stiffness, slope * servo.torque_constant]}
+        metadata["torque_constant"] = {joint: servo.torque_constant}
+        metadata["supply"] = {
             joint: [content["vin"], slope * content["vin"], content["vin"] / servo.torque_constant]
         }
-        found["extra"] = {**known, "resistance": servo.resistance}
-    return found
+        metadata["extra"] = {**known, "resistance": servo.resistance}
+    return metadata
 
 
 def _current(

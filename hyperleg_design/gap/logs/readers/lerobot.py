@@ -26,9 +26,9 @@ from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers.source import (
     FOLDER_FILE,
     beside,
+    build_log,
     joint_names,
     lacks,
-    made_log,
 )
 from hyperleg_design.gap.logs.readers.units import FACTORS
 from hyperleg_design.reading import read_json
@@ -72,40 +72,42 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
         InputError: no `observation.state`, unreadable tables, or positions whose unit is not known.
     """
     info = _info(path)
-    said = beside(path, metadata)
+    user_metadata = beside(path, metadata)
     features = info.get("features", {})
     if "observation.state" not in features:
         where = f"{path.name}/meta/info.json"
         raise InputError(where, "features", sorted(features)[:6], "expects observation.state")
-    found = [name.removesuffix(".pos") for name in _names(features["observation.state"], path.name)]
-    joints = joint_names(said, found, path.name)
-    table, read, rows = _table(path, [f for f in SIGNALS if f in features])
-    scale, remarks = _scale(info, said, found, table, path.name)
+    motor_names = [
+        name.removesuffix(".pos") for name in _names(features["observation.state"], path.name)
+    ]
+    joints = joint_names(user_metadata, motor_names, path.name)
+    table, rows_read, rows = _table(path, [f for f in SIGNALS if f in features])
+    scale, remarks = _scale(info, user_metadata, motor_names, table, path.name)
     remarks.append("time stamps are frame numbers over the frame rate, not measured")
-    if read < rows:
-        remarks.append(blocks.shortened(rows, read))
+    if rows_read < rows:
+        remarks.append(blocks.shortened(rows, rows_read))
     lacking = lacks({signal for feature, signal in SIGNALS.items() if feature in features})
-    gains = [] if said.get("gains") else ["gains"]
+    gains = [] if user_metadata.get("gains") else ["gains"]
     remarks.append(f"the source lacks {', '.join([*lacking, *gains])}")
-    made = []
+    logs = []
     for episode in np.unique(table["episode_index"]):
-        mine = table["episode_index"] == episode
-        if mine.sum() < 2:
+        in_episode = table["episode_index"] == episode
+        if in_episode.sum() < 2:
             continue
         signals: dict[str, np.ndarray] = {}
         for feature, signal in SIGNALS.items():
             if feature in table:
                 factors = scale if signal != "joint_torque" else np.ones(len(joints))
-                values = table[feature][mine][:, : len(joints)]
+                values = table[feature][in_episode][:, : len(joints)]
                 signals |= columns_of({signal: values * factors}, joints)
         name = f"{path.name}_{int(episode):06d}"
         about: tuple[str, ...] = ("robot_type", "fps", "codebase_version")
         extra = {key: info[key] for key in about if key in info} | {"episode": int(episode)}
-        time = table["timestamp"][mine]
-        made.append(made_log(path, name, time, signals, {"extra": extra}, said, remarks))
-    if not made:
+        time = table["timestamp"][in_episode]
+        logs.append(build_log(path, name, time, signals, {"extra": extra}, user_metadata, remarks))
+    if not logs:
         raise InputError(path.name, "", None, "is an empty log: no episode has two frames")
-    return made
+    return logs
 
 
 def _info(path: Path) -> dict[str, Any]:
@@ -176,13 +178,13 @@ def _array(column: Any, where: str, name: str) -> np.ndarray:
 
 def _scale(
     info: Mapping[str, Any],
-    said: Mapping[str, Any],
+    user_metadata: Mapping[str, Any],
     names: list[str],
     table: Mapping[str, np.ndarray],
     where: str,
 ) -> tuple[np.ndarray, list[str]]:
     """Factor of each joint to rad, and what was assumed."""
-    units = said.get("units", {})
+    units = user_metadata.get("units", {})
     unit = units.get("position") if isinstance(units, Mapping) else None
     kind = str(info.get("robot_type") or "")
     remarks = []

@@ -17,7 +17,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers.pickle_tensors import read_tensors
-from hyperleg_design.gap.logs.readers.source import beside, joint_names, lacks, made_log
+from hyperleg_design.gap.logs.readers.source import beside, build_log, joint_names, lacks
 
 SIGNALS = {
     "dof_pos": "position",
@@ -45,7 +45,7 @@ def read_pace(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
         InputError: damaged, without time or positions, or tensors of other lengths.
     """
     content = read_tensors(path)
-    said = beside(path, metadata)
+    user_metadata = beside(path, metadata)
     for key in ("time", "dof_pos"):
         if not isinstance(content.get(key), np.ndarray):
             remedy = "is missing: expects PACE's tensors time, dof_pos, des_dof_pos"
@@ -54,10 +54,10 @@ def read_pace(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
     shape = content["dof_pos"].shape
     if len(shape) != 2 or shape[0] != len(time):
         raise InputError(path.name, "dof_pos", shape, f"expects ({len(time)}, joints)")
-    found = content.get("joint_names")
-    named = isinstance(found, list | tuple) and len(found) == shape[1]
-    names = list(map(str, found or ())) if named else [f"joint_{i}" for i in range(shape[1])]
-    joints = joint_names(said, names, path.name)
+    stated_names = content.get("joint_names")
+    named = isinstance(stated_names, list | tuple) and len(stated_names) == shape[1]
+    names = list(map(str, stated_names or ())) if named else [f"joint_{i}" for i in range(shape[1])]
+    joints = joint_names(user_metadata, names, path.name)
     signals: dict[str, np.ndarray] = {}
     for key, signal in SIGNALS.items():
         if key in content:
@@ -66,16 +66,16 @@ def read_pace(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
                 raise InputError(path.name, key, values.shape, f"expects {shape}, as dof_pos")
             signals |= columns_of({signal: values}, joints)
     remarks = []
-    if "joints" not in said and not named:
+    if "joints" not in user_metadata and not named:
         remarks.append(
             "the source names no joints: joint_0, joint_1, ... in its order; say `joints` in a "
             "side file"
         )
     if lacking := lacks({column.partition("/")[0] for column in signals}):
         remarks.append(f"the source lacks {', '.join(lacking)}")
-    if not said.get("gains"):
+    if not user_metadata.get("gains"):
         remarks.append(
             "the source lacks the controller's gains: without them targets say nothing; say "
             "`gains` in a side file"
         )
-    return [made_log(path, path.stem, time, signals, {}, said, remarks)]
+    return [build_log(path, path.stem, time, signals, {}, user_metadata, remarks)]

@@ -24,7 +24,7 @@ from hyperleg_design.gap.logs import blocks
 from hyperleg_design.gap.logs import columns as log_columns
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers import mcap
-from hyperleg_design.gap.logs.readers.source import beside, made_log
+from hyperleg_design.gap.logs.readers.source import beside, build_log
 from hyperleg_design.gap.logs.readers.timebase import onto, sorted_stream
 
 JOINT_STATE = "sensor_msgs/msg/JointState"
@@ -80,7 +80,7 @@ def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
     Raises:
         InputError: damaged, without joint states, or in another encoding than CDR.
     """
-    said = beside(path, metadata)
+    user_metadata = beside(path, metadata)
     streams, remarks = _streams(_parts(path) if path.is_dir() else [path], path.name)
     states = {
         topic: s
@@ -113,11 +113,11 @@ def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
         )
     if not any(c.startswith("position_target/") for c in signals):
         remarks.append("the source lacks targets: no JointState topic speaks of commands")
-    if not said.get("gains"):
+    if not user_metadata.get("gains"):
         remarks.append("the source lacks the controller's gains; say `gains` in a side file")
     name = path.name if path.is_dir() else path.stem
-    found = {"base": "floating"} if any(c.startswith("gyro/") for c in signals) else {}
-    return [made_log(path, name, time, signals, found, said, remarks)]
+    source_metadata = {"base": "floating"} if any(c.startswith("gyro/") for c in signals) else {}
+    return [build_log(path, name, time, signals, source_metadata, user_metadata, remarks)]
 
 
 def _parts(path: Path) -> list[Path]:

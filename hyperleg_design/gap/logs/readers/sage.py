@@ -18,7 +18,7 @@ import numpy as np
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log
-from hyperleg_design.gap.logs.readers.source import beside, joint_names, made_log
+from hyperleg_design.gap.logs.readers.source import beside, build_log, joint_names
 from hyperleg_design.gap.logs.readers.timebase import onto, sorted_stream
 
 STATE, CONTROL, JOINTS = "state_motor.csv", "control.csv", "joint_list.txt"
@@ -63,7 +63,7 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
         InputError: a missing, empty or malformed table.
     """
     folder = path if path.is_dir() else path.parent
-    said = beside(folder, metadata)
+    user_metadata = beside(folder, metadata)
     time, state = _table(folder / STATE, ("positions", "velocities", "torques"))
     width = state["positions"].shape[1]
     listed = (
@@ -72,22 +72,23 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
     if listed and len(listed) != width:
         remedy = f"expects {width} names, as many as {STATE} has values"
         raise InputError(f"{folder.name}/{JOINTS}", "", len(listed), remedy)
-    joints = joint_names(said, listed or [f"joint_{i}" for i in range(width)], folder.name)
+    joints = joint_names(user_metadata, listed or [f"joint_{i}" for i in range(width)], folder.name)
     remarks = [] if listed else ["the source names no joints: joint_0, joint_1, ... in its order"]
-    scale, found = np.ones(width), {}
+    scale = np.ones(width)
+    source_metadata: dict[str, Any] = {"base": ""}
     if tuple(listed) == SO101:
         scale[-1] = SO101_JAW_RANGE
-        found = _so101(joints)
+        source_metadata |= _so101(joints)
         remarks.append(
             f"{joints[-1]} is logged as 0 .. 1 and taken as {SO101_JAW_RANGE} rad from closed to "
             f"open; its zero is not known"
         )
-        if "gains" not in said:
+        if "gains" not in user_metadata:
             remarks.append(
                 "gains are worked out from the collector's firmware gain and published kt and R at "
                 "7.4 V"
             )
-    elif "gains" not in said:
+    elif "gains" not in user_metadata:
         remarks.append("the source lacks the controller's gains; say `gains` in a side file")
     signals = columns_of({"position": state["positions"] * scale}, joints)
     if "velocities" in state:
@@ -114,7 +115,7 @@ def read_sage(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log
             remarks.append("targets have a clock of their own: each holds until the next")
     else:
         remarks.append(f"the source lacks {CONTROL}: no targets")
-    return [made_log(folder, folder.name, time, signals, {"base": "", **found}, said, remarks)]
+    return [build_log(folder, folder.name, time, signals, source_metadata, user_metadata, remarks)]
 
 
 def _so101(joints: list[str]) -> dict[str, Any]:
@@ -145,7 +146,7 @@ def _so101(joints: list[str]) -> dict[str, Any]:
     }
 
 
-def _table(path: Path, lists: tuple[str, ...]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def _table(path: Path, columns: tuple[str, ...]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Time [s] `(t,)` and the columns of lists `(t, n)` of one CSV file."""
     import pandas as pd
 
@@ -165,11 +166,11 @@ def _table(path: Path, lists: tuple[str, ...]) -> tuple[np.ndarray, dict[str, np
     time = pd.to_numeric(table["timestamp"], errors="coerce").to_numpy(float)
     if np.nanmedian(np.diff(time)) > LONGEST_STEP:
         time = time * 1e-6
-    found = {}
-    for column in lists:
+    lists = {}
+    for column in columns:
         if column in table:
-            found[column] = _rows(table[column].tolist(), where, column)
-    return time, found
+            lists[column] = _rows(table[column].tolist(), where, column)
+    return time, lists
 
 
 def _rows(texts: list[Any], where: str, column: str) -> np.ndarray:

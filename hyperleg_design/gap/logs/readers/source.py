@@ -52,12 +52,13 @@ def beside(path: Path, given: Mapping[str, Any] | None) -> dict[str, Any]:
     return {**(read_metadata_mapping(side) if side.is_file() else {}), **(given or {})}
 
 
-def joint_names(said: Mapping[str, Any], found: list[str], where: str) -> list[str]:
-    """Choose the names of a source's joints: those that a user gives as `joints`, else those found.
+def joint_names(user_metadata: Mapping[str, Any], source_names: list[str], where: str) -> list[str]:
+    """Choose the names of a source's joints: those that a user gives as `joints`, else the
+    source's own.
 
     Args:
-        said: fields that the user states.
-        found: names in the source's order.
+        user_metadata: fields that the user states.
+        source_names: names in the source's order.
         where: source, for error messages.
 
     Returns:
@@ -66,13 +67,13 @@ def joint_names(said: Mapping[str, Any], found: list[str], where: str) -> list[s
     Raises:
         InputError: another number of names.
     """
-    names = said.get("joints", found)
+    names = user_metadata.get("joints", source_names)
     if (
         not isinstance(names, list | tuple)
-        or len(names) != len(found)
+        or len(names) != len(source_names)
         or not all(isinstance(n, str) for n in names)
     ):
-        remedy = f"expects a list of {len(found)} names, in the order of the source"
+        remedy = f"expects a list of {len(source_names)} names, in the order of the source"
         raise InputError(where, "joints", names, remedy)
     if len(set(names)) != len(names):
         raise InputError(where, "joints", names, "expects different names")
@@ -91,13 +92,13 @@ def lacks(signals: Set[str]) -> list[str]:
     return [name for signal, name in WANTED.items() if signal not in signals]
 
 
-def made_log(
+def build_log(
     path: Path,
     name: str,
     time: np.ndarray,
     signals: Mapping[str, np.ndarray],
-    found: Mapping[str, Any],
-    said: Mapping[str, Any],
+    source_metadata: Mapping[str, Any],
+    user_metadata: Mapping[str, Any],
     remarks: Iterable[str],
 ) -> Log:
     """Build a log from a source; what the user states takes precedence over what the source states.
@@ -107,8 +108,8 @@ def made_log(
         name: of the log.
         time: [s], `(t,)`.
         signals: by column, `(t,)` each.
-        found: metadata of the source.
-        said: metadata that the user states.
+        source_metadata: metadata that the source states.
+        user_metadata: metadata that the user states.
         remarks: of the reader.
 
     Returns:
@@ -117,13 +118,18 @@ def made_log(
     Raises:
         InputError: an unusable clock, no position, or bad metadata.
     """
-    said = {key: value for key, value in said.items() if key not in ("joints", "columns", "units")}
+    user_metadata = {
+        key: value
+        for key, value in user_metadata.items()
+        if key not in ("joints", "columns", "units")
+    }
     time = np.asarray(time, float)
-    extra = dict(found.get("extra", {}))
+    extra = dict(source_metadata.get("extra", {}))
     if len(time) and np.isfinite(time[0]) and abs(time[0]) > LATEST_START:
         extra["start_time"] = float(time[0])
         time = time - time[0]
     metadata: Metadata = metadata_from_mapping(
-        {**found, "extra": extra, **said}, side_file(path).name if said else path.name
+        {**source_metadata, "extra": extra, **user_metadata},
+        side_file(path).name if user_metadata else path.name,
     )
     return finished_log(path, time, signals, metadata, remarks, name)

@@ -19,7 +19,7 @@ from hyperleg_design.gap.logs import blocks as row_blocks
 from hyperleg_design.gap.logs.blocks import chosen_blocks, shortened
 from hyperleg_design.gap.logs.columns import known_column, misspelt
 from hyperleg_design.gap.logs.log import Log
-from hyperleg_design.gap.logs.readers.source import beside, made_log
+from hyperleg_design.gap.logs.readers.source import beside, build_log
 from hyperleg_design.gap.logs.readers.units import factor, split_header
 
 TIMES = ("t", "time", "timestamp")
@@ -43,9 +43,9 @@ def read_csv(
         InputError: empty, no time, a mapped column that is missing, an unknown unit, or a column of
         texts.
     """
-    said = beside(path, metadata)
+    user_metadata = beside(path, metadata)
     header, separator = _header(path)
-    chosen = _chosen(header, {**said.get("columns", {}), **(mapping or {})}, path.name)
+    chosen = _chosen(header, {**user_metadata.get("columns", {}), **(mapping or {})}, path.name)
     if "t" not in chosen:
         raise InputError(
             path.name, "t", header[:6], "is missing: expects the time in a column t, or mapped to t"
@@ -64,7 +64,7 @@ def read_csv(
             f"columns that are not mapped were left out: "
             f"{', '.join(others[:8])}{' ...' if len(others) > 8 else ''}"
         )
-    return [made_log(path, path.stem, time, values, {}, said, remarks)]
+    return [build_log(path, path.stem, time, values, {}, user_metadata, remarks)]
 
 
 def _header(path: Path) -> tuple[list[str], str]:
@@ -96,9 +96,9 @@ def _chosen(
         raise InputError(
             where, wrong[0], None, f"is no column of the log format; did you mean {wrong[1]}?"
         )
-    for place, (name, unit) in enumerate(names):
+    for place, (name, unit_in_header) in enumerate(names):
         column = mapping.get(header[place], mapping.get(name, name))
-        column, said = split_header(column)
+        column, unit_in_mapping = split_header(column)
         if column.lower() in TIMES and "t" not in mapping.values():
             column = "t"
         if column != "t" and not known_column(column):
@@ -107,7 +107,7 @@ def _chosen(
             continue
         if column in chosen:
             raise InputError(where, column, None, "stands twice")
-        chosen[column] = (place, factor(column, said or unit, where))
+        chosen[column] = (place, factor(column, unit_in_mapping or unit_in_header, where))
     return chosen
 
 
@@ -152,7 +152,8 @@ def _read(
     except (ValueError, pd.errors.ParserError, OSError) as error:
         raise InputError(path.name, "", None, f"is no table ({in_short(error, 90)})") from None
     return {
-        column: np.concatenate(found) if found else np.empty(0) for column, found in parts.items()
+        column: np.concatenate(blocks_of_values) if blocks_of_values else np.empty(0)
+        for column, blocks_of_values in parts.items()
     }
 
 

@@ -32,17 +32,17 @@ def onto(
     known = (time >= own_time[0]) & (time <= own_time[-1] + (reach if hold else 0.0))
     if not hold:
         known &= own_time[after] - own_time[after - 1] <= reach
-    found = {}
+    resampled = {}
     for column, values in signals.items():
         if hold:
             at = np.clip(np.searchsorted(own_time, time, side="right") - 1, 0, None)
-            found[column] = np.where(known, values[at], np.nan)
+            resampled[column] = np.where(known, values[at], np.nan)
         else:
             weight = (time - own_time[after - 1]) / (own_time[after] - own_time[after - 1])
-            found[column] = np.where(
+            resampled[column] = np.where(
                 known, values[after - 1] + weight * (values[after] - values[after - 1]), np.nan
             )
-    return found
+    return resampled
 
 
 def sorted_stream(

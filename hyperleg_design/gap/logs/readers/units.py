@@ -48,8 +48,8 @@ def split_header(header: str) -> tuple[str, str]:
     Returns:
         Name and unit; the unit is empty where there is none.
     """
-    found = _HEADER.match(header.strip())
-    return (found["name"], found["unit"]) if found else (header.strip(), "")
+    match = _HEADER.match(header.strip())
+    return (match["name"], match["unit"]) if match else (header.strip(), "")
 
 
 def factor(column: str, given: str, where: str) -> float:
@@ -66,11 +66,11 @@ def factor(column: str, given: str, where: str) -> float:
     Raises:
         InputError: not a unit of this signal.
     """
-    known = FACTORS[unit(column)]
+    factors = FACTORS[unit(column)]
     if not given:
         return 1.0
-    found = known.get(given.strip().lower().replace(" ", ""))
-    if found is None:
-        remedy = f"is no unit of this signal; there are {', '.join(k for k in known if k)}"
+    unit_factor = factors.get(given.strip().lower().replace(" ", ""))
+    if unit_factor is None:
+        remedy = f"is no unit of this signal; there are {', '.join(k for k in factors if k)}"
         raise InputError(where, column, given, remedy)
-    return found
+    return unit_factor

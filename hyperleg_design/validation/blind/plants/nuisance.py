@@ -42,7 +42,7 @@ class Nuisance:
 
 
 def perfect(chain: Chain) -> Nuisance:
-    """Nothing off, belts as stiff as belts are.
+    """Build nuisance parameters of a robot that is as its model says, with stiff belts.
 
     Args:
         chain: the robot.
@@ -51,17 +51,17 @@ def perfect(chain: Chain) -> Nuisance:
         The nuisance parameters.
     """
     n, m = chain.joint_from_motor.shape
-    one, ones = np.ones(n), np.ones(m)
+    joint_scale, motor_scale = np.ones(n), np.ones(m)
     return Nuisance(
-        one,
+        joint_scale,
         np.zeros((n, 3)),
-        one,
-        ones,
-        one,
-        one,
-        ones,
+        joint_scale,
+        motor_scale,
+        joint_scale,
+        joint_scale,
+        motor_scale,
         np.zeros(n),
-        one,
+        joint_scale,
         np.full(m, 120.0),
         0.0,
         0.0,

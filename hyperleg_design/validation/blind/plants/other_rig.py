@@ -159,7 +159,7 @@ def simulate_other(
     seen = np.zeros((DIFFERENCED + 1, b, n))
     lines, columns = np.arange(b)[:, None], np.arange(m)[None]
     bus = np.broadcast_to(supply, (b, 1)).copy()
-    kept = {name: np.empty((count, b, width)) for name, width in columns_of(n, m).items()}
+    recorded = {name: np.empty((count, b, width)) for name, width in columns_of(n, m).items()}
     joint_pull = np.zeros((b, n))
     for tick in range(-lead, count):
         row, within = divmod(max(tick, 0), hold)
@@ -213,7 +213,7 @@ def simulate_other(
                 ("temperature", temperature),
                 ("voltage", bus),
             ):
-                kept[name][tick] = values
+                recorded[name][tick] = values
         for _ in range(CONTROL_STEPS):
             back_emf = droop * spin
             terminal = np.clip(
@@ -273,4 +273,4 @@ def simulate_other(
             spin = np.sign(free) * np.maximum(np.abs(free) - h * capacity / inertia, 0.0)
             q = q + 0.5 * h * qd
             rotor = rotor + 0.5 * h * spin
-    return traces_of(kept, np.full((count, b), np.nan), control)
+    return traces_of(recorded, np.full((count, b), np.nan), control)

@@ -128,7 +128,7 @@ def simulate(
     given = np.zeros((b, m))
     droop = stall / fastest
 
-    kept = {name: np.empty((count, b, width)) for name, width in columns_of(n, m).items()}
+    recorded = {name: np.empty((count, b, width)) for name, width in columns_of(n, m).items()}
     energies = np.full((count, b), np.nan)
     for tick in range(-lead, count):
         row, within = divmod(max(tick, 0), hold)
@@ -164,11 +164,11 @@ def simulate(
         )
         strength = scale * (1.0 - derating * np.maximum(temperature - 25.0, 0.0))
         if tick >= 0:
-            kept["position"][tick], kept["velocity"][tick] = angle, v[:, m:]
-            kept["encoder"][tick], kept["speed"][tick] = encoder, speed
-            kept["motor_velocity"][tick], kept["command"][tick] = v[:, :m], fresh
-            kept["drive_torque"][tick], kept["temperature"][tick] = current, temperature
-            kept["voltage"][tick] = bus
+            recorded["position"][tick], recorded["velocity"][tick] = angle, v[:, m:]
+            recorded["encoder"][tick], recorded["speed"][tick] = encoder, speed
+            recorded["motor_velocity"][tick], recorded["command"][tick] = v[:, :m], fresh
+            recorded["drive_torque"][tick], recorded["temperature"][tick] = current, temperature
+            recorded["voltage"][tick] = bus
         for _ in range(CONTROL_STEPS):
             current += lag * (wanted - current)
             np.multiply(current, strength, out=given)
@@ -230,7 +230,7 @@ def simulate(
             v += force
             x += h * v
         if tick >= 0:
-            kept["pull"][tick] = -(pull[:, None] @ back)[:, 0][:, m:]
+            recorded["pull"][tick] = -(pull[:, None] @ back)[:, 0][:, m:]
             if energy:
                 energies[tick] = [
                     pin.computeMechanicalEnergy(models[i], datas[i], x[i, m:], v[i, m:])
@@ -238,7 +238,7 @@ def simulate(
                     + 0.5 * (stiff[i] * (x[i] @ split[i]) ** 2).sum()
                     for i in range(b)
                 ]
-    return traces_of(kept, energies, control)
+    return traces_of(recorded, energies, control)
 
 
 def _stiff_belts(

@@ -203,7 +203,7 @@ def simulate_walking(
     pad_of = {g: i for i, g in enumerate(pads)}
     previous = fresh_target = first
     ankles = [model.body(f"{side}_foot").id for side in ("left", "right")]
-    kept = {
+    recorded = {
         k: np.zeros((count, w))
         for k, w in (
             ("encoder", n),
@@ -260,15 +260,15 @@ def simulate_walking(
         thrust = max(np.sin(2 * np.pi * p.push_frequency * tick * control), 0.0) ** 6
         data.xfrc_applied[root, :3] = plant.push * thrust
         if tick >= 0:
-            kept["encoder"][tick] = encoder
-            kept["speed"][tick] = speed
-            kept["motor_velocity"][tick] = spin
-            kept["command"][tick] = fresh
-            kept["drive_torque"][tick] = current
-            kept["temperature"][tick] = p.start_temperature
-            kept["base"][tick, :7], kept["base"][tick, 7:] = data.qpos[:7], data.qvel[:3]
-            kept["gyro"][tick] = data.sensordata[gyro : gyro + 3] + plant.gyro_bias
-            kept["accelerometer"][tick] = (
+            recorded["encoder"][tick] = encoder
+            recorded["speed"][tick] = speed
+            recorded["motor_velocity"][tick] = spin
+            recorded["command"][tick] = fresh
+            recorded["drive_torque"][tick] = current
+            recorded["temperature"][tick] = p.start_temperature
+            recorded["base"][tick, :7], recorded["base"][tick, 7:] = data.qpos[:7], data.qvel[:3]
+            recorded["gyro"][tick] = data.sensordata[gyro : gyro + 3] + plant.gyro_bias
+            recorded["accelerometer"][tick] = (
                 data.sensordata[accelerometer : accelerometer + 3] + plant.accelerometer_bias
             )
             for number in range(data.ncon):
@@ -308,7 +308,7 @@ def simulate_walking(
         contact=contact,
         voltage=np.full(count, p.voltage),
         fell=fell,
-        **kept,
+        **recorded,
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.logs.readers.source import beside, joint_names, made_log, side_file
+from hyperleg_design.gap.logs.readers.source import beside, build_log, joint_names, side_file
 
 
 def test_the_side_file_of_a_folder_a_table_and_a_json_file(tmp_path):
@@ -36,19 +36,24 @@ def test_joints_are_renamed_in_the_order_of_the_source():
 def test_a_clock_from_the_epoch_begins_at_zero_and_its_start_is_kept(tmp_path):
     time = 1.7e9 + np.arange(50) * 0.01
     signals = {"position/j": np.sin(np.arange(50) * 0.1)}
-    log = made_log(tmp_path / "run.csv", "run", time, signals, {"base": "fixed"}, {}, ["converted"])
+    log = build_log(
+        tmp_path / "run.csv", "run", time, signals, {"base": "fixed"}, {}, ["converted"]
+    )
     assert log.time[0] == 0.0
     np.testing.assert_allclose(np.diff(log.time), 0.01, atol=1e-6)
     assert log.metadata.extra["start_time"] == 1.7e9
     assert "converted" in log.metadata.remarks
-    later = made_log(tmp_path / "run.csv", "run", time - 1.7e9 + 5, signals, {}, {}, [])
+    later = build_log(tmp_path / "run.csv", "run", time - 1.7e9 + 5, signals, {}, {}, [])
     assert later.time[0] == pytest.approx(5.0)
     assert "start_time" not in later.metadata.extra
 
 
 def test_what_the_user_states_goes_before_what_the_source_states(tmp_path):
     time, signals = np.arange(50) * 0.01, {"position/j": np.zeros(50)}
-    found, said = {"base": "fixed", "session": "source"}, {"session": "user", "units": {}}
-    log = made_log(tmp_path / "run.csv", "run", time, signals, found, said, [])
+    source_metadata, user_metadata = (
+        {"base": "fixed", "session": "source"},
+        {"session": "user", "units": {}},
+    )
+    log = build_log(tmp_path / "run.csv", "run", time, signals, source_metadata, user_metadata, [])
     assert (log.metadata.base, log.metadata.session) == ("fixed", "user")
     assert "units" not in log.metadata.extra
