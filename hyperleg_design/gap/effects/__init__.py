@@ -9,6 +9,7 @@ import inspect
 import pkgutil
 
 from hyperleg_design.errors import InputError, meant
+from hyperleg_design.gap.effects.complete import check_complete
 from hyperleg_design.gap.effects.effect import Effect
 
 
@@ -22,6 +23,7 @@ def _found() -> dict[str, Effect]:
                 and not inspect.isabstract(kind)
                 and kind.__module__ == place.name
             ):
+                check_complete(kind)
                 found[kind.identifier] = kind()
     return dict(sorted(found.items()))
 
