@@ -34,18 +34,18 @@ def made(
             places.append(np.arange(start, start + count))
             start += count
     channel = Channel(
-        "motion",
-        0,
-        "joint",
-        np.array([one @ one.T for one in white]),
-        np.full(len(white), float(count)),
-        np.array(session),
-        np.array(band),
-        np.tile(np.arange(2), 2)[: 2 if sessions <= tested else 4],
-        np.arange(sessions) < tested,
-        tuple(places),
-        tuple(white),
-        steady,
+        residual="motion",
+        column=0,
+        name="joint",
+        products=np.array([one @ one.T for one in white]),
+        number=np.full(len(white), float(count)),
+        session=np.array(session),
+        band=np.array(band),
+        frequency=np.tile(np.arange(2), 2)[: 2 if sessions <= tested else 4],
+        tested=np.arange(sessions) < tested,
+        places=tuple(places),
+        whitened=tuple(white),
+        steady=steady,
     )
     return channel, white
 
