@@ -28,7 +28,7 @@ class Search(Printing):
     objective: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """Measure to optimise, of `hyperleg list measures`; the sweep's objectives by default."""
     constraint: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
-    """Bound such as walk.thermal_peak<=1; falls, heat and torque within bounds by default."""
+    """Bound such as walk.thermal_peak<=1; arrivals, heat and torque within bounds by default."""
     storage: str = ""
     """URL of the database, such as postgresql+psycopg://user@host/name; SQLite by default."""
     name: str = ""

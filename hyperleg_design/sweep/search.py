@@ -2,9 +2,9 @@
 told.
 
 The axes of a sweep are the space: ranges become numbers, lists become choices. Objectives are any
-measures of `registry`; constraints hold torque, heat and falls within bounds. The study lies in a
-database (SQLite beside the results, or PostgreSQL for many machines), so a search goes on where it
-was killed, and `optuna-dashboard` shows it while it runs.
+measures of `registry`; constraints hold arrivals, heat and torque within bounds. The study lies in
+a database (SQLite beside the results, or PostgreSQL for many machines), so a search goes on where
+it was killed, and `optuna-dashboard` shows it while it runs.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from hyperleg_design.sweep.measuring import measures
 from hyperleg_design.sweep.measuring.evaluate import evaluate_samples
 from hyperleg_design.sweep.searching.constraint import (
     Constraint,
+    earlier_constraints,
     read_constraint,
     usual_constraints,
 )
@@ -179,6 +180,7 @@ def run_search(
         directions=search.directions,
         seed=search.sweep.seed,
         digest=search.digest(),
+        remedies=_remedies(search),
     )
     _make(folder)
     owner = owner_of(folder)
@@ -198,6 +200,17 @@ def run_search(
                 finished = len(study.get_trials(deepcopy=False, states=done))
                 bar.update(finished - before)
     return study
+
+
+def _remedies(search: Search) -> dict[str, str]:
+    """How a search goes on that was begun with the usual constraints of earlier versions."""
+    bounds = earlier_constraints(search.protocols)
+    options = " ".join(f"--constraint '{bound.text}'" for bound in bounds)
+    earlier = dataclasses.replace(search, constraints=bounds).digest()
+    return {
+        earlier: "was begun with the constraints that were usual then, on falls rather than "
+        f"arrivals; go on with them by {options}, or choose another --name"
+    }
 
 
 def _check(folder: Path) -> None:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 SHOWN = {
     "walk": (
+        "arrived",
         "fell",
         "cost_of_transport",
         "grf_peak_body_weights",
@@ -33,6 +34,7 @@ SHOWN = {
         "thermal_peak",
     ),
     "t_test": (
+        "arrived",
         "fell",
         "time",
         "mean_deviation",
@@ -51,8 +53,8 @@ HEAT_PEAK = 1.0
 """Moving average of squared torque over rated torque from which heat limits a motor."""
 SPEED_SHARE = 0.95
 """Peak speed over no-load speed from which speed limits a motor; assumed."""
-MOST_FALLS = 0.05
-"""Share of falls up to which a design counts as one that walks; assumed."""
+FEWEST_ARRIVALS = 0.95
+"""Share of arrivals from which a design counts as one that walks; assumed."""
 _RESAMPLES = 1000
 """Number of resamples of the bootstrap of each design's interval."""
 _DRAWS = 400
@@ -211,7 +213,7 @@ def front(designs: pd.DataFrame, objectives: Sequence[str], seed: int = 0) -> pd
 
     Objectives of trials are uncertain: the probability of being on the front is the share of draws,
     from independent normal distributions of the intervals' widths, in which no other design is
-    better in all. Designs that fall more often than `MOST_FALLS` are left out.
+    better in all. Designs that do not walk are left out; see `walks`.
 
     Args:
         designs: one row for each design.
@@ -244,18 +246,21 @@ def front(designs: pd.DataFrame, objectives: Sequence[str], seed: int = 0) -> pd
 
 
 def walks(designs: pd.DataFrame) -> np.ndarray:
-    """Decide which designs walk: they were simulated and fall no more often than `MOST_FALLS`.
+    """Decide which designs walk: they were simulated and arrive in at least the share
+    `FEWEST_ARRIVALS` of the reported trials of each protocol.
+
+    Arrivals count rather than falls, because a robot that only stands never falls.
 
     Args:
-        designs: one row for each of n designs.
+        designs: one row for each of n designs, of `design_table`.
 
     Returns:
         `(n,)`.
     """
     good = np.ones(len(designs), bool)
     for protocol in registry.PROTOCOLS:
-        if f"{protocol}.fell" in designs:
-            good &= (designs[f"{protocol}.fell"] <= MOST_FALLS).to_numpy()
+        if f"{protocol}.arrived" in designs:
+            good &= (designs[f"{protocol}.arrived"] >= FEWEST_ARRIVALS).to_numpy()
     return good
 
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -16,6 +17,7 @@ from hyperleg_design.sweep import search as searching
 from hyperleg_design.sweep.finalists import run_finalists
 from hyperleg_design.sweep.measuring import measures
 from hyperleg_design.sweep.search import found_designs, run_search, search_of
+from hyperleg_design.sweep.searching.constraint import earlier_constraints
 from hyperleg_design.sweep.space import sweep_from_mapping
 from hyperleg_design.sweep.trials.trial_plan import plan
 from hyperleg_design.writing import MARKER
@@ -184,6 +186,24 @@ def test_designs_are_walked(tmp_path):
     for number, power in told.items():
         assert power == rows.set_index("number").loc[number, "walk.power"]
     assert all("walk.thermal_peak" in t.constraints for t in study.trials)
+
+
+def test_a_search_with_the_earlier_bounds_goes_on_by_the_options_that_the_error_names(
+    tmp_path, monkeypatch
+):
+    protocol = WalkProtocol(trials=2, distance=0.6, time_limit=0.8, steady=Steady(begin=0.3))
+    sweep = sweep_from_mapping(SPACE | {"axes": {"toe.mass": {"low": 0.1, "high": 0.5}}})
+    wanted = plan(sweep, [protocol], seeds=1)
+    with monkeypatch.context() as patch:
+        patch.setattr(searching, "usual_constraints", earlier_constraints)
+        begun = search_of(sweep, wanted, ["walk.power"])
+    assert begun.constraints[0].text == "walk.fell<=0.05"
+    run_search(begun, tmp_path, 1, progress=False)
+    with pytest.raises(OutputError, match="on falls rather than arrivals") as caught:
+        run_search(search_of(sweep, wanted, ["walk.power"]), tmp_path, 1, progress=False)
+    bounds = re.findall(r"--constraint '(\S+)'", str(caught.value))
+    same = search_of(sweep, wanted, ["walk.power"], bounds)
+    assert len(run_search(same, tmp_path, 1, progress=False).trials) == 1
 
 
 def test_designs_of_a_quadruped_are_walked_and_its_finalist_walks_again(tmp_path):

@@ -17,7 +17,9 @@ from hyperleg_design.sweep.trial_table import (
     design_table,
     front,
     sensitivities,
+    walks,
 )
+from hyperleg_design.sweep.trials.stored import stored
 
 COST = "walk.cost_of_transport"
 
@@ -33,7 +35,7 @@ def power_law(sweep):
     table.insert(0, "sample", np.arange(len(table)))
     table["variant"] = "toe"
     table[COST] = 0.3 * table["knee reduction"] ** -0.5 * table["toe.mass"] ** 0.1
-    table["walk.fell"] = 0.0
+    table["walk.arrived"] = 1.0
     return table
 
 
@@ -64,11 +66,11 @@ def test_a_front_counts_what_is_uncertain(sweep):
     table = power_law(sweep).head(4).copy()
     table[COST] = [0.5, 0.6, 0.501, 0.4]
     table["total_mass"] = [30.0, 29.0, 30.0, 31.0]
-    table["walk.fell"] = [0.0, 0.0, 0.0, 1.0]
+    table["walk.arrived"] = [1.0, 1.0, 0.95, 0.0]
     for name, width in ((f"{COST}.low", -0.01), (f"{COST}.high", 0.01)):
         table[name] = table[COST] + width
     found = front(table, [COST, "total_mass"]).set_index("sample")
-    assert set(found.index) == {0, 1, 2}  # 3 falls
+    assert set(found.index) == {0, 1, 2}  # 3 does not arrive
     assert found.loc[0, "on_front"]
     assert not found.loc[2, "on_front"]
     # 0 and 2 differ by 0.001 with standard errors of 0.0051 each: 2 wins in 45 % of draws
@@ -105,6 +107,7 @@ def test_a_table_of_designs_has_the_best_policys_means_intervals_and_reasons(swe
             "outcome": "arrived",
             "reason": "",
             "cost_of_transport": 0.5 + 0.1 * seed + 0.01 * k,
+            "arrived": 1.0,
             "fell": 0.0,
             "limit_share": 0.0,
             "thermal_peak": 0.5,
@@ -119,6 +122,8 @@ def test_a_table_of_designs_has_the_best_policys_means_intervals_and_reasons(swe
     found = design_table(sweep, pd.DataFrame(rows), columns).set_index("sample")
     assert found.loc[1, COST] == pytest.approx(0.51)  # seed 0 is cheaper; trials 0 and 2
     assert found.loc[1, f"{COST}.low"] < 0.51 < found.loc[1, f"{COST}.high"]
+    assert found.loc[1, "walk.arrived"] == 1
+    assert found.loc[1, "walk.arrived.low"] < 0.5
     assert found.loc[1, "walk.fell"] == 0
     assert found.loc[1, "walk.fell.high"] > 0.5  # two trials say little
     assert found.loc[1, "walk.trials"] == 2
@@ -181,3 +186,50 @@ def test_trials_that_fell_say_nothing_of_the_cost_of_walking():
     assert table[COST][0] == pytest.approx(0.35)
     assert np.isnan(table[COST][1])
     assert table["walk.fell"].tolist() == pytest.approx([1 / 3, 1.0])
+
+
+def test_a_design_that_only_stands_does_not_walk(sweep):
+    """Five trials each: all arrive, one times out, all time out, and one that was refused."""
+    endings = [["arrived"] * 5, ["arrived"] * 4 + ["timed_out"], ["timed_out"] * 5]
+    rows = [
+        {
+            "sample": sample,
+            "variant": "toe",
+            "protocol": "walk",
+            "policy": "walks-toe-0",
+            "trained": "zero-shot",
+            "outside": "",
+            "trial": k,
+            "outcome": ending,
+            "reason": "",
+            "cost_of_transport": 0.5 - 0.1 * sample,  # standing is cheap
+            "arrived": float(ending == "arrived"),
+            "fell": 0.0,
+            "limit_share": 0.0,
+            "thermal_peak": 0.5,
+            "speed_use": 0.5,
+        }
+        for sample, own in enumerate(endings)
+        for k, ending in enumerate(own)
+    ]
+    rows += [rows[0] | {"sample": 3, "trial": -1, "outcome": "rejected", "reason": "too low"}]
+    columns = {"sample": np.arange(4), "variant": ["toe"] * 4, "toe.mass": [0.1, 0.2, 0.3, 0.4]}
+    table = design_table(sweep, pd.DataFrame(rows), columns)
+    assert table["walk.fell"].tolist()[:3] == [0, 0, 0]
+    assert walks(table).tolist() == [True, False, False, False]
+    assert front(table, [COST])["sample"].tolist() == [0]
+    assert best(table, [COST])["sample"].tolist() == [0]
+
+
+def test_a_design_walks_where_it_arrives_under_every_protocol():
+    table = pd.DataFrame({"walk.arrived": [1.0, 1.0, 0.9], "t_test.arrived": [0.95, 0.9, 1.0]})
+    assert walks(table).tolist() == [True, False, False]
+
+
+def test_the_committed_map_has_forty_designs_that_walk():
+    committed = stored("walk_reduction_and_toe_mass")
+    samples = {str(k): v for k, v in committed.sweep.samples().items()}
+    columns = {"sample": np.arange(49), "variant": ["toe"] * 49, **samples}
+    table = design_table(committed.sweep, committed.trials, columns)
+    assert walks(table).sum() == 40
+    assert (table["walk.fell"] <= 0.05).sum() == 42

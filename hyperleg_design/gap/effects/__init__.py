@@ -9,6 +9,7 @@ import inspect
 import pkgutil
 
 from hyperleg_design.errors import InputError, meant
+from hyperleg_design.gap.effects.complete import check_complete
 from hyperleg_design.gap.effects.effect import Effect
 
 
@@ -23,6 +24,7 @@ def _discovered_effects() -> dict[str, Effect]:
                 and not inspect.isabstract(member)
                 and member.__module__ == module.name
             ):
+                check_complete(member)
                 effects[member.identifier] = member()
     return dict(sorted(effects.items()))
 

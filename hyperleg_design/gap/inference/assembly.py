@@ -322,20 +322,21 @@ def _channel(
     white, steady = rotated(
         white, sets[0].steady if len(sessions) > 1 else 0, rules.discrepancy.truncation
     )
-    return Channel(
-        key[0],
-        key[1],
-        parts[0][0].samples.rows[parts[0][1]].name,
-        np.array([cell @ cell.T for cell in white]),
-        np.array([cell[2] for cell in cells]),
-        np.array([sessions.index(cell[0]) for cell in cells]),
-        np.array([bands.index(cell[1]) for cell in cells]),
-        np.array([b for _, b in bands]),
-        np.array([number == 0 for number, _ in sessions]),
-        tuple(cell[3] for cell in cells),
-        tuple(white),
-        steady,
-    ), moved
+    channel = Channel(
+        residual=key[0],
+        column=key[1],
+        name=parts[0][0].samples.rows[parts[0][1]].name,
+        products=np.array([cell @ cell.T for cell in white]),
+        number=np.array([cell[2] for cell in cells]),
+        session=np.array([sessions.index(cell[0]) for cell in cells]),
+        band=np.array([bands.index(cell[1]) for cell in cells]),
+        frequency=np.array([b for _, b in bands]),
+        tested=np.array([number == 0 for number, _ in sessions]),
+        places=tuple(cell[3] for cell in cells),
+        whitened=tuple(white),
+        steady=steady,
+    )
+    return channel, moved
 
 
 def _placeholder(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarray], float]:

@@ -87,7 +87,7 @@ def _row(
     sinking = _smoothed(_sinking(filtered_log, row) ** 2, NEAR / signals.step)
     noise_level, start = np.empty(len(samples)), 0
     for band, white in zip(filtered_log.bands[row], density, strict=True):
-        part = slice(start, start + len(band.kept))
+        part = slice(start, start + len(band.used))
         start = part.stop
         local = _smoothed(
             samples[part] ** 2, band.count / (filtered_log.length * signals.step) * NEAR
@@ -124,7 +124,7 @@ def _turning(filtered_log: FilteredLog, row: int) -> np.ndarray:
 
 def _at(values: np.ndarray, band: Band) -> np.ndarray:
     """Values of ticks at the samples of a band."""
-    place = np.minimum((band.kept * (band.length / band.count)).astype(int), len(values) - 1)
+    place = np.minimum((band.used * (band.length / band.count)).astype(int), len(values) - 1)
     return np.asarray(values[place])
 
 
@@ -176,8 +176,8 @@ def _capped(filtered_log: FilteredLog, row: int, residual: np.ndarray, white: fl
     samples, start = filtered_log.sample(row, residual[None])[0], 0
     densities = []
     for band in filtered_log.bands[row]:
-        part = samples[start : start + len(band.kept)]
-        start += len(band.kept)
+        part = samples[start : start + len(band.used)]
+        start += len(band.used)
         densities.append(
             AT_MOST * float(np.mean(part**2)) / (band.high - band.low)
             if len(part) >= ENOUGH
@@ -252,7 +252,7 @@ def of_acceleration(filtered_log: FilteredLog, row: int) -> tuple[np.ndarray, np
     feigned = [_at(_of_acceleration(filtered_log, row, b.low, b.high), b) for b in bands]
     rate = [
         np.full(
-            len(b.kept), (2 * np.pi) ** 2 * 5 / 7 * (b.high**7 - b.low**7) / (b.high**5 - b.low**5)
+            len(b.used), (2 * np.pi) ** 2 * 5 / 7 * (b.high**7 - b.low**7) / (b.high**5 - b.low**5)
         )
         for b in bands
     ]
@@ -287,7 +287,7 @@ def of_load(filtered_log: FilteredLog, row: int) -> np.ndarray:
     shared = float(np.clip(0.5 * (own + its - both) / own, 0.0, 1.0))
     return np.concatenate(
         [
-            np.full(len(band.kept), shared * white * (band.high - band.low))
+            np.full(len(band.used), shared * white * (band.high - band.low))
             for band, white in zip(
                 filtered_log.bands[row],
                 _capped(filtered_log, row, residual, own),

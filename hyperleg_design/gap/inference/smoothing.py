@@ -67,9 +67,9 @@ def _asked(samples: Samples, log: FilteredLog, place: int, at: slice) -> np.ndar
     sampled = log.sample(place, np.nan_to_num(torque[:, 0])[None])[0]
     frequency, number, start = np.empty(len(sampled)), samples.share[at].copy(), 0
     for band in log.bands[place]:
-        mine = slice(start, start + len(band.kept))
+        mine = slice(start, start + len(band.used))
         start = mine.stop
-        part = (np.arange(len(band.kept)) % FREQUENCIES + 0.5) / FREQUENCIES
+        part = (np.arange(len(band.used)) % FREQUENCIES + 0.5) / FREQUENCIES
         frequency[mine] = band.low + (band.high - band.low) * part
         noise = np.sum(samples.floor[at][mine] ** 2)
         number[mine] *= 1 - min(noise / max(float(np.sum(sampled[mine] ** 2)), 1e-300), 1.0)

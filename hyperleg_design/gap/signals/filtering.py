@@ -88,7 +88,7 @@ class Band:
     """Samples over the whole transform."""
     length: int
     """Ticks of the whole transform."""
-    kept: np.ndarray
+    used: np.ndarray
     """Samples that count."""
 
 
@@ -126,7 +126,7 @@ class FilteredLog:
         for band in self.bands[row]:
             cut = np.zeros((len(values), band.count // 2 + 1), complex)
             cut[:, band.bins] = spectrum[:, band.bins] * band.gain
-            parts.append(irfft(cut, band.count, axis=-1)[:, band.kept] * (band.count / self.length))
+            parts.append(irfft(cut, band.count, axis=-1)[:, band.used] * (band.count / self.length))
         return np.concatenate(parts, -1) if parts else np.zeros((len(values), 0))
 
     def count(self, row: int) -> int:
@@ -138,7 +138,7 @@ class FilteredLog:
         Returns:
             The count.
         """
-        return sum(len(band.kept) for band in self.bands[row])
+        return sum(len(band.used) for band in self.bands[row])
 
     def labels(self, row: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Describe the samples of a row.
@@ -157,8 +157,8 @@ class FilteredLog:
         parts = [(np.zeros(0, int), np.zeros(0), np.zeros(0))]
         for b in self.bands[row]:
             numbers = 2 * min(b.high - b.low, WIDEST) * span / b.count
-            index, count = np.full(len(b.kept), b.index), np.full(len(b.kept), numbers)
-            parts.append((index, b.kept * (span / b.count), count))
+            index, count = np.full(len(b.used), b.index), np.full(len(b.used), numbers)
+            parts.append((index, b.used * (span / b.count), count))
         return tuple(np.concatenate(column) for column in zip(*parts, strict=True))  # type: ignore[return-value]
 
 

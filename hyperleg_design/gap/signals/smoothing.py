@@ -178,20 +178,6 @@ def bridged(values: np.ndarray) -> np.ndarray:
     return values if known.all() else np.interp(ticks, ticks[known], values[known])
 
 
-def filled(values: np.ndarray) -> np.ndarray:
-    """Bridge the unknown ticks of several signals.
-
-    Args:
-        values: `(t, k)`, NaN where unknown.
-
-    Returns:
-        `(t, k)`; 0 where nothing is known of a signal.
-    """
-    known = np.isfinite(values).any(0)
-    columns = zip(values.T, known, strict=True)
-    return np.stack([bridged(v) if some else np.zeros(len(v)) for v, some in columns], -1)
-
-
 def estimate_noise(time: np.ndarray, samples: np.ndarray, step: float, order: int) -> Noise:
     """Estimate noise and crossover of the largest Whittle likelihood.
 

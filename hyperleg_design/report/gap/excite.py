@@ -18,12 +18,13 @@ from hyperleg_design.gap.experiments.designed_experiment import (
     inseparable,
 )
 from hyperleg_design.gap.experiments.pair import apart
-from hyperleg_design.gap.model.joint_units import unit_at
+from hyperleg_design.gap.model.joint_units import slides, unit_at
 from hyperleg_design.report.style import figure_style, save
 from hyperleg_design.writing import write_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 MOST_DRAWN = 7
 """Joints drawn of a robot with more: one leg's."""
@@ -169,7 +170,8 @@ def _deviation_lines(experiment: Experiment) -> list[str]:
 
 
 def motions_figure(experiment: Experiment) -> Figure:
-    """Draw the targets of all motions over time, with a panel for each motion.
+    """Draw the targets of all motions over time, with a panel for each motion: of joints that turn
+    in degrees, of joints that slide in metres, dashed and on an axis of their own beside others.
 
     Args:
         experiment: the plan.
@@ -188,15 +190,26 @@ def motions_figure(experiment: Experiment) -> Figure:
             rows, columns, figsize=(11, 2.1 * rows + 0.6), squeeze=False, layout="constrained"
         )
         colours = plt.get_cmap("viridis")(np.linspace(0, 0.92, len(joints)))
+        sliding = [slides(experiment.subject, "joint", joint) for joint in joints]
+        mixed = any(sliding) and not all(sliding)
+        lines: list[Line2D] = []
         for panel, motion in zip(panels.flat, motions, strict=False):
-            for i, joint in enumerate(joints):
-                panel.plot(
+            beside = panel.twinx() if mixed else panel
+            lines = [
+                (beside if along else panel).plot(
                     motion.time,
-                    np.degrees(motion.position[:, i]),
+                    motion.position[:, i] if along else np.degrees(motion.position[:, i]),
                     color=colours[i],
                     linewidth=0.9,
-                    label=joint,
-                )
+                    linestyle="--" if along and mixed else "-",
+                    label=f"{joint} [m]" if along and mixed else joint,
+                )[0]
+                for i, (joint, along) in enumerate(zip(joints, sliding, strict=True))
+            ]
+            if mixed:
+                beside.set_ylabel("m")
+                beside.grid(False)
+                beside.spines["right"].set_visible(True)
             if motion.off.any():
                 panel.axvspan(
                     motion.time[motion.off][0], motion.time[-1], color="#f3f4f6", zorder=0
@@ -211,15 +224,14 @@ def motions_figure(experiment: Experiment) -> Figure:
                 )
             chosen = ", in the shortest set" if motion.name in experiment.chosen else ""
             panel.set_title(f"{motion.name}{chosen}", loc="left", fontsize=10)
-            panel.set_ylabel("deg")
+            panel.set_ylabel("m" if all(sliding) else "deg")
             panel.margins(x=0.01)
         for panel in panels.flat[len(motions) :]:
             panel.set_axis_off()
         for panel in panels[-1]:
             panel.set_xlabel("time [s]")
-        handles, labels = panels.flat[0].get_legend_handles_labels()
         figure.legend(
-            handles, labels, loc="outside lower center", ncols=min(len(joints), 7), fontsize=8
+            handles=lines, loc="outside lower center", ncols=min(len(joints), 7), fontsize=8
         )
         return figure
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING, Any
 
+from hyperleg_design.evaluation.measures import OUTCOMES
 from hyperleg_design.report.page import Commands, Details, Explorer, Page, Section, Table, render
 from hyperleg_design.report.sweep.explorer import explorer
 from hyperleg_design.report.sweep.page import sweep_content
@@ -15,7 +16,7 @@ from hyperleg_design.report.sweep.trials_text import (
     best_text,
     design_cells,
     design_heads,
-    falls_table,
+    endings_table,
     no_walk_text,
     policies_of,
     policy_kind,
@@ -29,6 +30,7 @@ from hyperleg_design.sweep import registry
 from hyperleg_design.sweep.spaces.definition import Map, Sweep
 from hyperleg_design.sweep.trial_runs import TRIALS
 from hyperleg_design.sweep.trial_table import (
+    FEWEST_ARRIVALS,
     SHOWN,
     best,
     build_command,
@@ -99,7 +101,7 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
     )
     ran = [policy_text(trials), *_policy_table(sweep, designs, protocols)]
     sections = [
-        Section("Policies", [*ran, Table(*falls_table(trials, designs))]),
+        Section("Policies", [*ran, Table(*endings_table(trials, designs))]),
         Section("Measures over the parameters", [_explorer(sweep, designs, fronts, "evaluated")]),
         Section("Limits that act", [_limits(designs, protocols)]),
         Section("Which parameter each measure follows", [_sensitivity_table(followed)]),
@@ -124,7 +126,7 @@ def evaluated_report(result: SweepResult) -> dict[str, Any]:
         + (
             best_text(sweep, chosen, objectives, commands)
             if len(chosen)
-            else f"{no_walk_text(designs)}\n{text_table(*falls_table(trials, designs))}"
+            else f"{no_walk_text(designs)}\n{text_table(*endings_table(trials, designs))}"
         ),
     }
 
@@ -152,11 +154,11 @@ def evaluated_content(
         policy_text(trials),
         _explorer(sweep, designs, fronts, name),
         Details(
-            "Best designs, falls of each policy, limits that act, and which parameter each measure "
-            "follows",
+            "Best designs, endings of each policy, limits that act, and which parameter each "
+            "measure follows",
             [
                 *_best_tables(sweep, designs, chosen, commands, objectives),
-                Table(*falls_table(trials, designs)),
+                Table(*endings_table(trials, designs)),
                 _limits(designs, [p for p in registry.PROTOCOLS if f"{p}.trials" in designs]),
                 _sensitivity_table(_followed(sweep, designs)),
             ],
@@ -171,8 +173,8 @@ def _shown(designs: pd.DataFrame) -> list[str]:
 
 
 def _followed(sweep: Sweep, designs: pd.DataFrame) -> list[dict[str, Any]]:
-    """Sensitivities of the measures with intervals, falls left out."""
-    names = [name for name in _shown(designs) if not name.endswith(".fell")]
+    """Sensitivities of the measures with intervals, arrivals and falls left out."""
+    names = [name for name in _shown(designs) if name.rpartition(".")[2] not in OUTCOMES]
     return sensitivities(sweep, designs, names)
 
 
@@ -196,15 +198,22 @@ def _policy_table(sweep: Sweep, designs: pd.DataFrame, protocols: list[str]) -> 
         own = designs[designs[f"{protocol}.trials"] > 0]
         lost = designs[designs[f"{protocol}.trials"] == 0]
         rows += [
-            [protocol, str(v), len(part), int((part[f"{protocol}.fell"] > 0.5).sum())]
+            [
+                protocol,
+                str(v),
+                len(part),
+                int((part[f"{protocol}.arrived"] >= FEWEST_ARRIVALS).sum()),
+                int((part[f"{protocol}.fell"] > 0.5).sum()),
+            ]
             for v, part in own.groupby("variant", sort=False)
         ]
         rows += [
             [protocol, str(row["variant"]), f"sample {row['sample']}: {row[f'{protocol}.reason']}"]
             for _, row in lost.iterrows()
         ]
-    heads = ["protocol", "variant", "designs evaluated", "of these fall in most trials"]
-    padded = [[*row, *[""] * (4 - len(row))] for row in rows]
+    arrive = f"of these arrive in at least {100 * FEWEST_ARRIVALS:g} %"
+    heads = ["protocol", "variant", "designs evaluated", arrive, "of these fall in most trials"]
+    padded = [[*row, *[""] * (len(heads) - len(row))] for row in rows]
     return [Table(*without_variants(heads, padded))]
 
 

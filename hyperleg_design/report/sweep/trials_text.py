@@ -10,7 +10,7 @@ from hyperleg_design.report.text import table as text_table
 from hyperleg_design.sweep import registry
 from hyperleg_design.sweep.spaces.definition import AS_DESCRIBED, Sweep
 from hyperleg_design.sweep.trial_runs import REJECTED
-from hyperleg_design.sweep.trial_table import MOST_FALLS, walks
+from hyperleg_design.sweep.trial_table import FEWEST_ARRIVALS, walks
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -96,23 +96,25 @@ def no_walk_text(designs: pd.DataFrame) -> str:
         The rule, the design that is nearest to it, and the options that change what counts.
     """
     if walks(designs).any():
-        return "No design that seldom falls has a value for every objective."
-    falls = designs[[f"{p}.fell" for p in registry.PROTOCOLS if f"{p}.fell" in designs]]
-    worst = falls.max(axis=1, skipna=False)
-    if not worst.notna().any():
+        return "No design that walks has a value for every objective."
+    names = [f"{p}.arrived" for p in registry.PROTOCOLS]
+    arrivals = designs[[name for name in names if name in designs]]
+    lowest = arrivals.min(axis=1, skipna=False)
+    if not lowest.notna().any():
         return "No design could be simulated under every protocol."
-    least = int(np.nanargmin(worst.to_numpy(float)))
+    nearest = int(np.nanargmax(lowest.to_numpy(float)))
     return (
-        f"No design falls in at most {100 * MOST_FALLS:g} % of the trials of the policy that is "
-        f"best on it, so that there is no front and no best design. Sample "
-        f"{designs['sample'].iloc[least]} falls least often, in {100 * worst.iloc[least]:.0f} %. "
-        f"--policies and --seeds choose the policies; hyperleg search takes another bound, such "
-        f"as --constraint '{falls.columns[0]}<=0.3'."
+        f"No design arrives in at least {100 * FEWEST_ARRIVALS:g} % of the trials of the policy "
+        f"that is best on it, so that there is no front and no best design. Sample "
+        f"{designs['sample'].iloc[nearest]} arrives most often, in "
+        f"{100 * lowest.iloc[nearest]:.0f} %. --policies and --seeds choose the policies; hyperleg "
+        f"search takes another bound, such as --constraint '{arrivals.columns[0]}>=0.7'."
     )
 
 
-def falls_table(trials: pd.DataFrame, designs: pd.DataFrame) -> tuple[list[str], list[list[Any]]]:
-    """Count the falls of each policy over all designs, and the designs that it is the best on.
+def endings_table(trials: pd.DataFrame, designs: pd.DataFrame) -> tuple[list[str], list[list[Any]]]:
+    """Count the arrivals and falls of each policy over all designs, and the designs that it is the
+    best on.
 
     Args:
         trials: of `run_trials`.
@@ -124,10 +126,10 @@ def falls_table(trials: pd.DataFrame, designs: pd.DataFrame) -> tuple[list[str],
     run = trials[trials["trial"] >= 0]
     rows: list[list[Any]] = []
     for (protocol, policy), own in run.groupby(["protocol", "policy"], sort=False):
-        fell = int((own["fell"] > 0).sum())
+        shares = [100 * float((own[name] > 0).mean()) for name in ("arrived", "fell")]
         best_on = int((designs[f"{protocol}.policy"] == policy).sum())
-        rows.append([protocol, policy, len(own), fell, 100 * fell / len(own), best_on])
-    return ["protocol", "policy", "trials", "falls", "falls [%]", "best on designs"], rows
+        rows.append([protocol, policy, len(own), *shares, best_on])
+    return ["protocol", "policy", "trials", "arrivals [%]", "falls [%]", "best on designs"], rows
 
 
 def best_text(

@@ -75,8 +75,10 @@ def _value(bound: Constraint, row: Row) -> str:
 
 def _relaxed(bound: Constraint, value: float) -> Constraint:
     """The bound, moved to three digits beyond a value that violates it."""
-    if bound.violation(value) <= 0 or value == 0:
+    if bound.violation(value) <= 0:
         return bound
+    if value == 0:
+        return Constraint(bound.name, 0.0, bound.at_most)
     digit = 10.0 ** (math.floor(math.log10(abs(value))) - 2)
     moved = (math.ceil if bound.at_most else math.floor)(value / digit) * digit
     return Constraint(bound.name, moved, bound.at_most)

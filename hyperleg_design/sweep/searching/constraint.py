@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.sweep import registry
+from hyperleg_design.sweep.trial_table import FEWEST_ARRIVALS
 
 _BOUND = re.compile(r"\s*([\w.]+)\s*(<=|>=)\s*(\S+)\s*")
 
@@ -72,7 +74,7 @@ def read_constraint(text: str, protocols: Sequence[str]) -> Constraint:
 
 
 def usual_constraints(protocols: Sequence[str]) -> tuple[Constraint, ...]:
-    """Falls, heat and torque within bounds under each protocol (assumed).
+    """Designs that walk, with heat and torque within bounds (assumed), under each protocol.
 
     Args:
         protocols: that are evaluated.
@@ -80,8 +82,26 @@ def usual_constraints(protocols: Sequence[str]) -> tuple[Constraint, ...]:
     Returns:
         The constraints.
     """
+    return _with_limits(protocols, Constraint("arrived", FEWEST_ARRIVALS, at_most=False))
+
+
+def earlier_constraints(protocols: Sequence[str]) -> tuple[Constraint, ...]:
+    """The usual constraints of searches that were begun when falls were bounded, not arrivals.
+
+    Args:
+        protocols: that are evaluated.
+
+    Returns:
+        The constraints, in the order in which databases of such searches hold them.
+    """
+    return _with_limits(protocols, Constraint("fell", 0.05, at_most=True))
+
+
+def _with_limits(protocols: Sequence[str], ending: Constraint) -> tuple[Constraint, ...]:
+    """A bound on how trials end, and those on heat and torque, under each protocol."""
+    limits = (Constraint("thermal_peak", 1.0, True), Constraint("limit_share", 0.05, True))
     return tuple(
-        Constraint(f"{protocol}.{name}", bound, True)
+        dataclasses.replace(bound, name=f"{protocol}.{bound.name}")
         for protocol in protocols
-        for name, bound in (("fell", 0.05), ("thermal_peak", 1.0), ("limit_share", 0.05))
+        for bound in (ending, *limits)
     )

@@ -6,7 +6,7 @@ import json
 import re
 import uuid
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -60,6 +60,7 @@ def open_study(
     directions: Sequence[str],
     seed: int,
     digest: str,
+    remedies: Mapping[str, str] | None = None,
 ) -> optuna.Study:
     """The study of a search in a database, made where it is not there.
 
@@ -70,6 +71,7 @@ def open_study(
         directions: `minimize` or `maximize` for each objective.
         seed: of the sampler.
         digest: fingerprint of the search, which the study keeps.
+        remedies: what an error says of a study that holds another fingerprint, by fingerprint.
 
     Returns:
         The study.
@@ -99,10 +101,11 @@ def open_study(
             study.set_metric_names(list(objectives))
             study.set_user_attr("digest", digest)
         if study is None or study.user_attrs["digest"] != digest:
-            raise OutputError(
-                f"the study {name} in this database is of another space, plan, objective or "
-                f"constraint; choose another --name"
+            known = (remedies or {}).get(study.user_attrs["digest"] if study else "")
+            reason = known or (
+                "is of another space, plan, objective or constraint; choose another --name"
             )
+            raise OutputError(f"the study {name} in this database {reason}")
     return study
 
 

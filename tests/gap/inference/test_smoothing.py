@@ -28,7 +28,7 @@ def test_a_lag_costs_what_it_takes_of_each_frequency(steered, lag):
     place = next(i for i, at in enumerate(places) if at.start == own[0])
     start = 0
     for band in log.bands[place]:
-        index = np.arange(len(band.kept)) % 8
+        index = np.arange(len(band.used)) % 8
         frequency[start : start + len(index)] = (
             band.low + (band.high - band.low) * (index + 0.5) / 8
         )

@@ -22,7 +22,7 @@ kind: walk
 name: short
 trials: 2
 distance: 0.6
-time_limit: 0.8
+time_limit: 2.0
 steady: {begin: 0.3}
 """
 

@@ -103,21 +103,22 @@ def test_the_best_design_by_each_objective_comes_with_its_command():
     ]
 
 
-def test_where_no_design_walks_the_rule_and_the_falls_of_each_policy_are_told():
-    designs = pd.DataFrame({"sample": [0, 1, 2], "walk.fell": [0.5, 0.25, np.nan]})
+def test_where_no_design_walks_the_rule_and_the_endings_of_each_policy_are_told():
+    designs = pd.DataFrame({"sample": [0, 1, 2], "walk.arrived": [0.5, 0.75, np.nan]})
     text = trials_text.no_walk_text(designs)
-    assert "in at most 5 % of the trials of the policy that is best on it" in text
-    assert "Sample 1 falls least often, in 25 %." in text
-    assert "--constraint 'walk.fell<=0.3'" in text
+    assert "in at least 95 % of the trials of the policy that is best on it" in text
+    assert "Sample 1 arrives most often, in 75 %." in text
+    assert "--constraint 'walk.arrived>=0.7'" in text
     nothing = trials_text.no_walk_text(designs[2:])
     assert nothing == "No design could be simulated under every protocol."
-    assert "has a value" in trials_text.no_walk_text(designs.assign(**{"walk.fell": 0.0}))
+    assert "has a value" in trials_text.no_walk_text(designs.assign(**{"walk.arrived": 1.0}))
     rows = {"trial": [0, 1, 0, -1], "protocol": "walk", "policy": ["a", "a", "b", ""]}
-    trials = pd.DataFrame(rows | {"fell": [1.0, 0.0, 0.0, np.nan]})
+    endings = {"arrived": [0.0, 0.0, 1.0, np.nan], "fell": [1.0, 0.0, 0.0, np.nan]}
+    trials = pd.DataFrame(rows | endings)
     judged = designs.assign(**{"walk.policy": ["b", "b", np.nan]})
-    assert trials_text.falls_table(trials, judged)[1] == [
-        ["walk", "a", 2, 1, 50.0, 0],
-        ["walk", "b", 1, 0, 0.0, 2],
+    assert trials_text.endings_table(trials, judged)[1] == [
+        ["walk", "a", 2, 0.0, 50.0, 0],
+        ["walk", "b", 1, 100.0, 0.0, 2],
     ]
 
 

@@ -22,24 +22,24 @@ def study_of(*rows):
 def test_the_design_that_violates_least_and_the_bounds_that_it_holds():
     rest = {"walk.limit_share": 0.0}
     study = study_of(
-        {"walk.fell": 0.9, "walk.thermal_peak": 0.5, **rest},
-        {"walk.fell": 0.1234, "walk.thermal_peak": 1.5, **rest},
-        {"walk.fell": None, "walk.thermal_peak": 0.5, **rest},
+        {"walk.arrived": 0.1, "walk.thermal_peak": 0.5, **rest},
+        {"walk.arrived": 0.8766, "walk.thermal_peak": 1.5, **rest},
+        {"walk.arrived": None, "walk.thermal_peak": 0.5, **rest},
     )
     text = violations(search_with(usual_constraints(["walk"]), ["walk"]), study)
     assert text[0] == "constraints (those by default):"
     counts = [line.split() for line in text[1].splitlines()[2:]]
     assert counts == [
-        ["walk.fell<=0.05", "0", "2"],
+        ["walk.arrived>=0.95", "0", "2"],
         ["walk.thermal_peak<=1", "1", "2"],
         ["walk.limit_share<=0.05", "2", "2"],
     ]
     nearest = [line.split() for line in text[3].splitlines()[2:]]
-    assert nearest[0] == ["1", "0.2", "0.1234", "*", "1.5", "*", "0"]
+    assert nearest[0] == ["1", "0.2", "0.8766", "*", "1.5", "*", "0"]
     assert nearest[1][0] == "0"
-    for bound in ("walk.fell<=0.124", "walk.thermal_peak<=1.5", "walk.limit_share<=0.05"):
+    for bound in ("walk.arrived>=0.876", "walk.thermal_peak<=1.5", "walk.limit_share<=0.05"):
         assert f"--constraint '{bound}'" in text[4]
-        values = {"walk.fell": 0.1234, "walk.thermal_peak": 1.5, "walk.limit_share": 0.0}
+        values = {"walk.arrived": 0.8766, "walk.thermal_peak": 1.5, "walk.limit_share": 0.0}
         relaxed = read_constraint(bound, ["walk"])
         assert relaxed.violation(values[relaxed.name]) <= 0
 
@@ -50,3 +50,9 @@ def test_a_lower_bound_and_a_study_without_measures():
         "--constraint 'total_mass>=32.1'" in violations(search, study_of({"total_mass": 32.16}))[4]
     )
     assert violations(search, study_of({"total_mass": None})) == []
+
+
+def test_a_lower_bound_moves_to_none_where_the_nearest_design_has_none():
+    search = search_with((read_constraint("walk.arrived>=0.95", ["walk"]),), ["walk"])
+    text = violations(search, study_of({"walk.arrived": 0.0}))[4]
+    assert text.endswith("design 0 holds --constraint 'walk.arrived>=0'")

@@ -6,6 +6,7 @@ import pytest
 from hyperleg_design.errors import InputError
 from hyperleg_design.sweep.searching.constraint import (
     Constraint,
+    earlier_constraints,
     read_constraint,
     usual_constraints,
 )
@@ -28,5 +29,20 @@ def test_constraints_are_read_strictly():
         with pytest.raises(InputError):
             read_constraint(text, ["walk"])
     assert found.text == "walk.thermal_peak<=1.5"
-    names = {c.name for c in usual_constraints(["walk"])}
-    assert names == {"walk.fell", "walk.thermal_peak", "walk.limit_share"}
+
+
+def test_by_default_designs_walk_within_their_limits():
+    texts = [c.text for c in usual_constraints(["walk", "t_test"])]
+    limits = ["thermal_peak<=1", "limit_share<=0.05"]
+    wanted = [f"{p}.{t}" for p in ("walk", "t_test") for t in ("arrived>=0.95", *limits)]
+    assert texts == wanted
+
+
+def test_the_constraints_of_earlier_searches_are_read_back_from_their_texts():
+    bounds = earlier_constraints(["walk"])
+    assert [c.text for c in bounds] == [
+        "walk.fell<=0.05",
+        "walk.thermal_peak<=1",
+        "walk.limit_share<=0.05",
+    ]
+    assert tuple(read_constraint(c.text, ["walk"]) for c in bounds) == bounds

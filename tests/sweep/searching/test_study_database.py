@@ -13,7 +13,7 @@ from hyperleg_design.sweep.searching.study_database import (  # noqa: E402
 )
 
 
-def opened(folder, digest="a"):
+def opened(folder, digest="a", remedies=None):
     return open_study(
         f"sqlite:///{folder / 'study.db'}",
         "mass",
@@ -21,6 +21,7 @@ def opened(folder, digest="a"):
         directions=["minimize"],
         seed=0,
         digest=digest,
+        remedies=remedies,
     )
 
 
@@ -30,6 +31,10 @@ def test_a_study_is_opened_again_under_its_digest_alone(tmp_path):
     assert len(opened(tmp_path).trials) == 1
     with pytest.raises(OutputError, match="choose another --name"):
         opened(tmp_path, digest="b")
+    with pytest.raises(OutputError, match="mass in this database was begun otherwise"):
+        opened(tmp_path, digest="b", remedies={"a": "was begun otherwise", "c": "no"})
+    with pytest.raises(OutputError, match="choose another --name"):
+        opened(tmp_path, digest="b", remedies={"c": "no"})
 
 
 def test_only_the_owners_running_trials_are_asked_for_anew(tmp_path):

@@ -32,7 +32,7 @@ NOISES = 3
 """Noises of a channel whose spectra are kept."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Channel:
     """Sums of products of one channel, by cell: one band of one session."""
 

@@ -9,7 +9,6 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from hyperleg_design.gap.inference.channels.channel import Channel
-from hyperleg_design.gap.inference.channels.discrepancy_posterior import discrepancy_posterior
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.rules import InferenceRules
 
@@ -34,18 +33,18 @@ def made(
             places.append(np.arange(start, start + count))
             start += count
     channel = Channel(
-        "motion",
-        0,
-        "joint",
-        np.array([one @ one.T for one in white]),
-        np.full(len(white), float(count)),
-        np.array(session),
-        np.array(band),
-        np.tile(np.arange(2), 2)[: 2 if sessions <= tested else 4],
-        np.arange(sessions) < tested,
-        tuple(places),
-        tuple(white),
-        steady,
+        residual="motion",
+        column=0,
+        name="joint",
+        products=np.array([one @ one.T for one in white]),
+        number=np.full(len(white), float(count)),
+        session=np.array(session),
+        band=np.array(band),
+        frequency=np.tile(np.arange(2), 2)[: 2 if sessions <= tested else 4],
+        tested=np.arange(sessions) < tested,
+        places=tuple(places),
+        whitened=tuple(white),
+        steady=steady,
     )
     return channel, white
 
@@ -95,33 +94,6 @@ def test_reduced_products_are_those_in_the_metric_of_the_covariance(steady):
     whole[1:, : columns.shape[1]] = columns
     expected = whole @ np.linalg.solve(dense(channel, SCALES), whole.T)
     np.testing.assert_allclose(left, expected, rtol=1e-8, atol=1e-9)
-
-
-@pytest.mark.parametrize("steady", [0, 1])
-def test_posterior_of_the_discrepancy_is_that_of_the_normal_equations(steady):
-    channel, white = made(np.random.default_rng(8), steady=steady)
-    means, covariances = discrepancy_posterior(channel, SCALES)
-    k, sessions = channel.columns, len(channel.tested)
-    change = channel.change_scales(SCALES) ** 2
-    precision = np.zeros((k * (1 + sessions),) * 2)
-    precision[:k, :k] = np.eye(k) / np.exp(2 * SCALES.standing)
-    right = np.zeros(len(precision))
-    for s in range(sessions):
-        own = slice(k * (1 + s), k * (2 + s))
-        precision[own, own] = np.diag(np.where(np.arange(k) < steady, 1e12, 1 / change[s]))
-    for cell, one in enumerate(white):
-        s, noise = channel.session[cell], SCALES.noise[channel.band[cell]]
-        both = np.r_[0:k, k * (1 + s) : k * (2 + s)]
-        stacked = np.concatenate([one[:-1], one[:-1]])
-        precision[np.ix_(both, both)] += stacked @ stacked.T / noise
-        right[both] += stacked @ one[-1] / noise
-    covariance = np.linalg.inv(precision)
-    mean = covariance @ right
-    for s in range(sessions):
-        turn = np.zeros((k, len(right)))
-        turn[:, :k] = turn[:, k * (1 + s) : k * (2 + s)] = np.eye(k)
-        np.testing.assert_allclose(means[s], turn @ mean, rtol=1e-7, atol=1e-9)
-        np.testing.assert_allclose(covariances[s], turn @ covariance @ turn.T, atol=1e-9)
 
 
 def test_taking_a_trace_off_is_the_same_as_another_residual():
