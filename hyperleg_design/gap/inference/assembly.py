@@ -206,7 +206,7 @@ def evidence_of(
     subject, healthy = tests[0].subject, (*references, *tests)[0]
     rubbing = replace(subject, coulomb=dry_friction(healthy))
     errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), rubbing)
-    errors.sort(key=lambda error: not error.inertial)
+    errors.sort(key=lambda error: not error.steady)
     sets = [_set(tests, errors, rules, tested=True)]
     if not len(sets[0].samples.value):
         raise InputError(
@@ -274,7 +274,7 @@ def _set(
         for row, traces in nuisance_traces.columns(filtered, errors).items():
             columns[:, places[row]] = traces
     columns[[error.inertial for error in errors]] *= samples.felt
-    steady = sum(error.inertial for error in errors)
+    steady = sum(error.steady for error in errors)
     return _Set(filtered_logs, samples, floors, columns, steady, tested)
 
 

@@ -14,13 +14,6 @@ from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis, Name
 from hyperleg_design.gap.inference.rules import InferenceRules
 
-PER_PARAMETER = 0.5
-"""Log prior odds against each parameter, beside what the marginal likelihood takes for it."""
-MISSING, HALF = 4.0, 0.5
-"""Log odds against more than this share of what a model describes being missing (assumed: friction
-that nobody described is usual, and joints run in, but none runs freely, nor is a rotor without
-inertia)."""
-
 
 def log_prior(
     hypothesis: Hypothesis, evidence: Evidence, rules: InferenceRules, count: Mapping[str, int]
@@ -49,7 +42,7 @@ def log_prior(
             values = hypothesis.values(place)
             odds.append(
                 WEIGHED[cause.effect].odds(cause.location, evidence.signals[0].subject, values)
-                + min(prior_odds(cause, values), 0.0)
+                + min(prior_odds(cause, values, rules), 0.0)
                 + (0.0 if cause.standing else beyond_usual(hypothesis, place, evidence, rules))
             )
             place += 1
@@ -172,12 +165,13 @@ def usual_error(
     return share * rules.cause.usual * evidence.usual.get(parameter, 0.0)
 
 
-def prior_odds(cause: Cause, values: np.ndarray) -> float:
+def prior_odds(cause: Cause, values: np.ndarray, rules: InferenceRules) -> float:
     """State log prior odds of a cause over those of any other cause in its place.
 
     Args:
         cause: the effect and its place.
         values: of its parameters `(k,)`.
+        rules: of the inference.
 
     Returns:
         The log odds: what each free parameter costs, and what the effect itself states
@@ -185,9 +179,9 @@ def prior_odds(cause: Cause, values: np.ndarray) -> float:
     """
     free = int((~cause.shape).sum() if cause.linear else (cause.high > cause.low).sum())
     effect = WEIGHED[cause.effect]
-    odds = effect.rare if effect.flexible else -PER_PARAMETER * free + effect.rare
+    odds = effect.rare if effect.flexible else -rules.cause.parameter * free + effect.rare
     if cause.unseen:
         odds += effect.unseen
-    if effect.described and values[0] < HALF * cause.low[0] < 0:
-        odds -= MISSING
+    if effect.described and values[0] < rules.cause.missing_from * cause.low[0] < 0:
+        odds -= rules.cause.missing
     return odds + effect.size_odds(values, cause.usual, cause.declared, cause.beyond)

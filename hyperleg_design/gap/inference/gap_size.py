@@ -8,7 +8,7 @@ own is not much smaller.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -21,8 +21,6 @@ from hyperleg_design.gap.inference.unlisted import makes_noise
 from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.signals.signals import RESIDUALS
 
-COUNTS = 0.25
-"""Channels count for the gap from this share of the largest excess of any (assumed)."""
 DRAWS = 400
 """Draws of the block bootstrap."""
 
@@ -39,6 +37,7 @@ class GapSize:
     """The same with the causes."""
     noise: np.ndarray
     """The same that no cause can go below."""
+    rules: InferenceRules = field(default_factory=InferenceRules)
 
     @classmethod
     def of(
@@ -54,7 +53,7 @@ class GapSize:
         """
         before, after = mean_squares(evidence, held.before), mean_squares(evidence, held.after)
         lowest = _lowest_squares(evidence, hypothesis, held, rules)
-        return cls(evidence, held, before, after, lowest)
+        return cls(evidence, held, before, after, lowest, rules)
 
     @cached_property
     def excess(self) -> np.ndarray:
@@ -70,7 +69,8 @@ class GapSize:
         shown |= not shown.any()
         largest = int(np.argmax(np.where(shown, self.excess, -1.0)))
         same = np.array([unit == units[largest] for unit in units])
-        return shown & same & (self.excess >= COUNTS * self.excess[largest])
+        least = self.rules.posterior.counts * self.excess[largest]
+        return shown & same & (self.excess >= least)
 
     @property
     def unit(self) -> str:

@@ -38,12 +38,6 @@ from hyperleg_design.gap.inference.threads import spread
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-CLOSE = 0.02
-"""Step of a nonlinear fit, over usual sizes, below which it has converged [-]."""
-SCALES_LIMIT = 2.0
-"""Noise under test over a healthy robot's, in variance, and discrepancy, at most where causes are
-looked for [-]."""
-
 
 @dataclass(frozen=True, eq=False)
 class _Fitted:
@@ -135,7 +129,7 @@ class HypothesisFit:
                 move = np.clip(cause.nulls + sizes * cause.usual, low, high) - values
             else:
                 move = (best[1].values - values) / 2
-            if np.max(np.abs(move) / cause.usual) < CLOSE:
+            if np.max(np.abs(move) / cause.usual) < self.rules.search.converged:
                 break
             values = values + move
         return None if best is None else Candidate(proposal.effect, proposal.location, (best[1],))
@@ -176,7 +170,7 @@ class HypothesisFit:
         sized = list(zip(hypothesis.causes, values, strict=True))
         drives = [pair for pair in sized if pair[0].standing and pair[0].effect in IN_DRIVES]
         masses = [pair for pair in sized if pair[0].effect in INERTIAL]
-        candidates, place = [], 0
+        candidates, place, least = [], 0, self.rules.search.converged
         for candidate in hypothesis.candidates:
             causes = []
             for cause in candidate.causes:
@@ -185,7 +179,9 @@ class HypothesisFit:
                 if not cause.standing and cause.effect in IN_DRIVES:
                     others = drives
                 wanted = tuple(float(x) for _, own in others for x in own)
-                if _near(at, cause.values, cause.usual) and _near(wanted, cause.before, 1.0):
+                if are_near(at, cause.values, cause.usual, least) and are_near(
+                    wanted, cause.before, 1.0, least
+                ):
                     causes.append(cause)
                     continue
                 effect = WEIGHED[cause.effect]
@@ -326,12 +322,19 @@ def _sizes(stack: Stack, solution: Solution) -> np.ndarray:
     return np.append(solution.theta, 1.0) if stack.constant_last else solution.theta
 
 
-def _near(values: ArrayLike, others: ArrayLike, usual: ArrayLike) -> bool:
-    """Whether values differ by less than `CLOSE` usual sizes."""
+def are_near(values: ArrayLike, others: ArrayLike, usual: ArrayLike, least: float) -> bool:
+    """Tell whether values are as many and differ by less than a share of their usual sizes.
+
+    Args:
+        values: of some parameters `(k,)`.
+        others: of the same.
+        usual: their usual sizes `(k,)`.
+        least: the share, `SearchRules.converged`.
+    """
     first, second = np.asarray(values, float), np.asarray(others, float)
     if len(first) != len(second):
         return False
-    return bool(np.all(np.abs(first - second) < CLOSE * np.asarray(usual)))
+    return bool(np.all(np.abs(first - second) < least * np.asarray(usual)))
 
 
 def limited_scales(
@@ -341,7 +344,7 @@ def limited_scales(
     would explain otherwise.
 
     Noise and discrepancy that were fitted without a cause stand for it and hide it. They are cut to
-    `SCALES_LIMIT` times those of a healthy robot.
+    `SearchRules.scales` times those of a healthy robot.
 
     Args:
         evidence: channels.
@@ -351,14 +354,12 @@ def limited_scales(
     Returns:
         The limited scales by channel.
     """
-    prior = rules.discrepancy
-    change, alone = np.log(SCALES_LIMIT * prior.change), np.log(SCALES_LIMIT * prior.standing)
+    prior, most = rules.discrepancy, rules.search.scales
+    change, alone = np.log(most * prior.change), np.log(most * prior.standing)
     limited = []
     for channel, own in zip(evidence.channels, scales, strict=True):
         noise, place = own.noise.copy(), channel.bands_tested
-        noise[place] = np.minimum(
-            noise[place], SCALES_LIMIT * channel.usual_noise(own.noise, rules)
-        )
+        noise[place] = np.minimum(noise[place], most * channel.usual_noise(own.noise, rules))
         standing = own.standing if channel.referenced else min(own.standing, alone)
         limited.append(Scales(noise, standing, min(own.change, change), 0.0))
     return tuple(limited)

@@ -53,9 +53,9 @@ FORCES_LATE, TORQUES_LATE = "contact_told_late", "torque_told_late"
 STEPPED, OF_STEPPED = "friction_stepped", 0.5
 """Friction as simulators integrate it (damping f(v) / v at the speed before a step, times the speed
 after it) less friction at the speed itself, and the deviation of its share [-]."""
-FILTERED, OF_FILTER = "speed_filtered", 0.0015
+FILTERED, OF_FILTER = "speed_filtered", 0.005
 """Delay of the speed that a controller's damping acts on, and its deviation [s]: drives filter
-speeds at 50-200 Hz, or difference positions."""
+speeds at 30-200 Hz, or difference positions (assumed)."""
 UNLISTED = (*SPEEDS, SOLE, SOLE_GIVES, FORCES_LATE, FORCES_SCALED, TORQUES_LATE, STEPPED, FILTERED)
 """Nuisance parameters that belong to no effect of the catalogue, one of each name at a place."""
 
@@ -74,6 +74,11 @@ class NuisanceParameter:
     def inertial(self) -> bool:
         """Whether it is of masses or rotors, see `Effect.inertial`."""
         return self.effect in EFFECTS and EFFECTS[self.effect].inertial
+
+    @property
+    def steady(self) -> bool:
+        """Whether it is the same in all sessions: masses, rotors, and filters of drives are."""
+        return self.inertial or self.effect == FILTERED
 
     @property
     def name(self) -> str:

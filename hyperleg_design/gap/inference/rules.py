@@ -100,6 +100,15 @@ class CauseRules:
     usual: float = 3.0
     """Deviations of the usual calibration error beyond which a size is a fault, of causes that
     no reference logs tell from it [-] (assumed)."""
+    parameter: float = 0.5
+    """Log prior odds against each parameter, beside what the marginal likelihood takes for it [nat]
+    (assumed)."""
+    missing: float = 4.0
+    """Log odds against more than the share `missing_from` of what a model describes being missing
+    [nat] (assumed: friction that nobody described is usual, and joints run in, but none runs
+    freely, nor is a rotor without inertia)."""
+    missing_from: float = 0.5
+    """That share [-] (assumed)."""
     width: float = 3.0
     """Prior deviation of a parameter over its effect's usual size [-]; a fit beyond it widens it
     (assumed)."""
@@ -127,6 +136,11 @@ class SearchRules:
     """Effects that are tried at all of their places at once in one step [-]."""
     rounds: int = 12
     """Most rounds of fitting causes and scales in turn [-]."""
+    scales: float = 2.0
+    """Noise under test over a healthy robot's, in variance, and discrepancy, at most where causes
+    are looked for [-] (assumed)."""
+    converged: float = 0.02
+    """Step of a nonlinear fit, over usual sizes, below which it has converged [-]."""
     settled: float = 0.05
     """Change of a cause in one round, over its deviation, from which both have converged [-]."""
 
@@ -144,6 +158,16 @@ class PosteriorRules:
     main_part: float = 0.5
     """Share of the gap that causes must close, else the answer is `unknown`, and that other logs
     must foretell of what feet and the IMU tell [-] (assumed)."""
+    counts: float = 0.25
+    """Share of the largest excess of any channel, from which a channel counts for the gap [-]
+    (assumed)."""
+    clear: float = 2.0
+    """Standard deviations of a parameter from its null, from which an effect that acts at all of
+    its places is named at one of them [-]."""
+    ringing: float = 20.0
+    """Density of a residual above its motion over that of the references, from which a joint rings
+    [-] (developed: at most 7 times where loops are stable and no belt is soft, whatever else is
+    wrong, and 24 to 1600 times where play knocks)."""
     remainder: float = 0.1
     """Share of the gap that is left, from which a remainder is reported [-] (assumed)."""
     interval: float = 1.4

@@ -18,7 +18,7 @@ from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, traces_of
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis, Name, Stack
-from hyperleg_design.gap.inference.hypothesis_fit import CLOSE, HypothesisFit, limited_scales
+from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit, are_near, limited_scales
 from hyperleg_design.gap.inference.proposals import Proposal, Proposer
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.threads import spread
@@ -250,7 +250,7 @@ class Search:
         optima: list[Candidate] = []
         for proposal in proposals[: 1 if linear else None]:
             candidate = self.fits.candidate(proposal, current)
-            if candidate and not any(_alike(candidate, other) for other in optima):
+            if candidate and not any(self._alike(candidate, other) for other in optima):
                 optima.append(candidate)
         fits_of_starts = [
             self.fits.fit((*current.candidates, optimum), current.scales) for optimum in optima
@@ -261,6 +261,14 @@ class Search:
             enough = self._predicted_change(proposals[0], current) + current.score - best.score
             self._needed[_names_at_place(proposals[0], current)] = enough, current.score
         return best
+
+    def _alike(self, first: Candidate, second: Candidate) -> bool:
+        """Whether an effect at a place is linearised at about the same values twice."""
+        least = self.rules.search.converged
+        return all(
+            are_near(a.values, b.values, a.usual, least)
+            for a, b in zip(first.causes, second.causes, strict=True)
+        )
 
     def at_all_places(
         self, proposals: Mapping[Name, Sequence[Proposal]], current: Hypothesis
@@ -308,14 +316,6 @@ class Search:
 def _names_at_place(proposal: Proposal, current: Hypothesis) -> tuple[Name, ...]:
     """Name of a cause, and those of a hypothesis at the same place."""
     return proposal.name, *(name for name in current.names if name[1] == proposal.location)
-
-
-def _alike(first: Candidate, second: Candidate) -> bool:
-    """Whether an effect at a place is linearised at about the same values twice."""
-    return all(
-        bool(np.all(np.abs(a.values - b.values) < CLOSE * a.usual))
-        for a, b in zip(first.causes, second.causes, strict=True)
-    )
 
 
 def without_gain_from_torques(cause: Cause) -> Cause:

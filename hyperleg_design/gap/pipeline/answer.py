@@ -39,9 +39,6 @@ from hyperleg_design.gap.signals.signals import RESIDUALS
 WORST = -9.99
 """Least share of a gap closed that is stated [-]; a cause that fits other data badly may close far
 less than nothing."""
-CLEAR = 2.0
-"""Standard deviations of a parameter from its null, from which an effect that acts at all of its
-places is named at one of them [-]."""
 
 
 class Answer:
@@ -173,7 +170,7 @@ class Answer:
             closed = self.closed_by(hypothesis, place)
             sizes = intervals(cause, values, deviation, subject, self.torque_error)
             sized.append((stands, Named(cause.effect, cause.location, probability, closed, sizes)))
-        clear_ones = [named for stands, named in sized if stands >= CLEAR]
+        clear_ones = [named for stands, named in sized if stands >= self.rules.posterior.clear]
         return clear_ones or [max(sized, key=lambda entry: entry[0])[1]]
 
     @property

@@ -59,7 +59,7 @@ class Unexplained:
         """Joints that ring and are in no limit cycle, and how many times as loud as before."""
         logs = self.evidence.samples.filtered_logs
         count = len(self.evidence.signals)
-        over = ringing(logs[:count], logs[count:])
+        over = ringing(logs[:count], logs[count:], self.rules.posterior.ringing)
         return {joint: times for joint, times in over.items() if joint not in self.cycling}
 
     @property

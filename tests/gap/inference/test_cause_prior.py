@@ -9,8 +9,6 @@ from scipy.stats import norm
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.cause_prior import (
-    MISSING,
-    PER_PARAMETER,
     beyond_usual,
     log_chance,
     log_prior,
@@ -136,28 +134,31 @@ def cause(name, **changes):
 
 def test_each_free_parameter_costs_the_same():
     gains = cause("controller_gain")
-    both = prior_odds(gains, np.array([0.8, 1.0]))
+    both = prior_odds(gains, np.array([0.8, 1.0]), RULES)
     one = prior_odds(
         cause("controller_gain", high=np.array([5.0, 1.0]), low=np.array([0.1, 1.0])),
         np.array([0.8, 1.0]),
+        RULES,
     )
-    assert one - both == pytest.approx(PER_PARAMETER)
+    assert one - both == pytest.approx(RULES.cause.parameter)
 
 
 def test_rare_effects_are_less_probable_and_those_whose_driver_nobody_logged_still_less():
     values = np.array([1.0, 0.0, 10.0])
-    seen, unseen = (prior_odds(cause("voltage_sag", unseen=u), values) for u in (False, True))
+    seen, unseen = (
+        prior_odds(cause("voltage_sag", unseen=u), values, RULES) for u in (False, True)
+    )
     assert unseen - seen == EFFECTS["voltage_sag"].unseen < 0
-    free = 3 * PER_PARAMETER
+    free = 3 * RULES.cause.parameter
     assert seen == pytest.approx(EFFECTS["voltage_sag"].rare - free)
 
 
 def test_friction_that_is_described_is_not_gone():
     described = cause("coulomb_friction", low=np.array([-2.0]))
-    little, most = (prior_odds(described, np.array([v])) for v in (-0.5, -1.5))
-    assert little - most == pytest.approx(MISSING)
+    little, most = (prior_odds(described, np.array([v]), RULES) for v in (-0.5, -1.5))
+    assert little - most == pytest.approx(RULES.cause.missing)
     bare = cause("coulomb_friction", low=np.array([0.0]))
-    assert prior_odds(bare, np.array([0.5])) == pytest.approx(little)
+    assert prior_odds(bare, np.array([0.5]), RULES) == pytest.approx(little)
 
 
 @pytest.mark.parametrize("references", [(), (None,)])

@@ -9,8 +9,6 @@ import pytest
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.hypothesis import Candidate
 from hyperleg_design.gap.inference.hypothesis_fit import (
-    CLOSE,
-    SCALES_LIMIT,
     HypothesisFit,
     limited_scales,
 )
@@ -53,7 +51,9 @@ def test_a_load_is_the_same_wherever_it_was_linearised(fits):
     )
     assert settled.values(0)[0] == pytest.approx(LOAD[0], rel=0.1)
     (cause,) = settled.causes
-    assert (np.abs(cause.values - settled.values(0)) < CLOSE * cause.usual).all()
+    assert (
+        np.abs(cause.values - settled.values(0)) < fits.rules.search.converged * cause.usual
+    ).all()
 
 
 def test_what_is_linearised_where_it_is_stays_as_it_is(fits):
@@ -87,8 +87,10 @@ def test_causes_are_looked_for_where_nothing_stands_in_for_them(fits):
         limited_scales(fits.evidence, grown, fits.rules), grown, fits.evidence.channels, strict=True
     ):
         assert one.new == 0
-        assert np.exp(one.change) == pytest.approx(SCALES_LIMIT * fits.rules.discrepancy.change)
+        assert np.exp(one.change) == pytest.approx(
+            fits.rules.search.scales * fits.rules.discrepancy.change
+        )
         assert one.standing == large.standing  # of references
         usual = channel.usual_noise(large.noise, fits.rules)
-        assert (one.noise[channel.bands_tested] <= SCALES_LIMIT * usual).all()
+        assert (one.noise[channel.bands_tested] <= fits.rules.search.scales * usual).all()
     assert limited_scales(fits.evidence, fits.null.scales, fits.rules)[0].new == 0

@@ -15,6 +15,7 @@ from hyperleg_design.gap.inference.nuisance import (
     nuisance_parameters,
 )
 from hyperleg_design.gap.inference.nuisance_traces import traces
+from hyperleg_design.gap.signals.loading import load_subject
 
 
 def test_every_error_belongs_to_the_catalogue_and_to_a_place_of_the_robot(signals, errors):
@@ -93,3 +94,13 @@ def test_a_joint_without_a_drive_has_no_belt(tmp_path):
         if one.effect == "stiff_belt"
     ]
     assert belts == ["hip"]
+
+
+def test_masses_and_filters_of_drives_are_the_same_in_all_sessions(
+    robot_files,
+):
+    subject = load_subject(str(robot_files["coupled"]), [])
+    parameters = nuisance_parameters(subject, 0.005)
+    steady = {parameter.effect for parameter in parameters if parameter.steady}
+    assert {"speed_filtered", "link_mass", "rotor_inertia"} <= steady
+    assert not steady & {"coulomb_friction", "torque_constant", "encoder_offset", "command_delay"}

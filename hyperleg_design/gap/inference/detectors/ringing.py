@@ -15,18 +15,17 @@ import numpy as np
 from hyperleg_design.gap.inference.white_noise import white_density
 from hyperleg_design.gap.signals.filtering import FilteredLog
 
-LOUD = 20.0
-"""Density of a residual above its motion over that of the references, from which a joint rings [-]
-(developed: at most 7 times where loops are stable and no belt is soft, whatever else is wrong, and
-24 to 1600 times where play knocks)."""
 
-
-def ringing(tests: Sequence[FilteredLog], references: Sequence[FilteredLog]) -> dict[str, float]:
+def ringing(
+    tests: Sequence[FilteredLog], references: Sequence[FilteredLog], least: float
+) -> dict[str, float]:
     """Find the joints that ring in a log under test and in no reference.
 
     Args:
         tests: logs under test.
         references: of the healthy robot; without any, no joint is named.
+        least: density over that of the references from which a joint rings,
+            `PosteriorRules.ringing` [-].
 
     Returns:
         By joint, how many times as large its residual of motion is above the frequencies of the
@@ -39,7 +38,7 @@ def ringing(tests: Sequence[FilteredLog], references: Sequence[FilteredLog]) -> 
     for joint in loud[0]:
         own = max(density.get(joint, 0.0) for density in loud)
         before = max((density.get(joint, 0.0) for density in quiet), default=0.0)
-        if before > 0 and own > LOUD * before:
+        if before > 0 and own > least * before:
             over[joint] = float(np.sqrt(own / before))
     return dict(sorted(over.items(), key=lambda entry: -entry[1]))
 

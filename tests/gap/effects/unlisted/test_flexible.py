@@ -71,5 +71,5 @@ def test_shapes_cost_no_prior_odds_beside_that_of_their_kind_and_the_choice_of_t
     samples = evidence_of([signals], [], InferenceRules()).samples
     row = effect.variants(signals, "swing")[0]
     cause = linearise(samples, effect, "swing", row)
-    assert prior_odds(cause, row) == effect.rare
+    assert prior_odds(cause, row, InferenceRules()) == effect.rare
     assert effect.odds("swing", signals.subject, row) <= -np.log(len(effect.inputs))

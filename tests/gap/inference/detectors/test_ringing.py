@@ -2,9 +2,12 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.inference.detectors.ringing import LOUD, ringing
+from hyperleg_design.gap.inference.detectors.ringing import ringing
+from hyperleg_design.gap.inference.rules import PosteriorRules
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.signals.filtering import filtered_log
+
+LOUD = PosteriorRules.ringing
 
 
 def shaken(seed, size, motor="m_back"):
@@ -25,19 +28,19 @@ def filtered(robot_files):
 
 def test_healthy_joints_do_not_ring(filtered):
     runs = filtered(*(diagnosed.run("healthy", seed) for seed in range(4)))
-    assert ringing(runs[:2], runs[2:]) == {}
-    assert ringing(runs[:2], ()) == {}
+    assert ringing(runs[:2], runs[2:], LOUD) == {}
+    assert ringing(runs[:2], (), LOUD) == {}
 
 
 def test_joints_that_shake_in_a_log_under_test_ring(filtered):
     quiet = filtered(*(shaken(seed, 0.01) for seed in (2, 3)))
     loud = filtered(*(shaken(seed, 0.2) for seed in (0, 1)))
-    over = ringing(loud, quiet)
+    over = ringing(loud, quiet, LOUD)
     assert over
     assert list(over.values()) == sorted(over.values(), reverse=True)
     assert all(np.sqrt(LOUD) < times < 25 for times in over.values())
-    assert over.keys() <= ringing([*loud[:1], *quiet[:1]], quiet[1:]).keys()
-    assert ringing(quiet, loud) == {}
+    assert over.keys() <= ringing([*loud[:1], *quiet[:1]], quiet[1:], LOUD).keys()
+    assert ringing(quiet, loud, LOUD) == {}
 
 
 def test_a_robot_that_rings_is_not_said_to_be_healthy(robot_files):
