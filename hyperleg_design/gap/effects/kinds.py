@@ -12,13 +12,8 @@ import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.placing import (
-    at_joint,
-    at_motor,
-    driven_motors,
-    joint_strength,
-    motor_strength,
-)
+from hyperleg_design.gap.effects.placing import at_joint, at_motor, driven_motors
+from hyperleg_design.gap.effects.strength import joint_strength, motor_strength
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.gap.effects.placing import joint_strength
+from hyperleg_design.gap.effects.strength import joint_strength
 from hyperleg_design.gap.model.subject import Subject
 
 LATE, LATE_TICKS = 0.001, 0.15

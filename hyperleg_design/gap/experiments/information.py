@@ -23,8 +23,8 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.placing import joint_strength, motor_strengths
 from hyperleg_design.gap.effects.series import low_passed
+from hyperleg_design.gap.effects.strength import joint_strength, motor_strengths
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 

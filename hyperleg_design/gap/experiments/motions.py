@@ -21,7 +21,7 @@ from itertools import compress
 
 import numpy as np
 
-from hyperleg_design.gap.effects.placing import joint_strength
+from hyperleg_design.gap.effects.strength import joint_strength
 from hyperleg_design.gap.experiments import trajectories
 from hyperleg_design.gap.experiments.rehearsal import closed_loop, knows_gains, swung
 from hyperleg_design.gap.experiments.rig_room import LONG, Room, Use, targets_for, use_of

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.errors import InfeasibleError
-from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength, motor_strengths
+from hyperleg_design.gap.effects.strength import joint_inertia, joint_strength, motor_strengths
 from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.machine import machine_of
 from hyperleg_design.gap.model.subject import Subject

@@ -20,7 +20,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.placing import motor_strength
+from hyperleg_design.gap.effects.strength import motor_strength
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.inference.shrinking import Shrinking, shrinking
 from hyperleg_design.gap.inference.smoothing import smoothing

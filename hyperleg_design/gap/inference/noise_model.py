@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.gap.effects.placing import joint_strength, motor_strength
+from hyperleg_design.gap.effects.strength import joint_strength, motor_strength
 from hyperleg_design.gap.inference.rules import NoiseRules
 from hyperleg_design.gap.inference.white_noise import white_density
 from hyperleg_design.gap.model import rigid

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.effects.placing import ROBOT, driven_motors, motor_strength
+from hyperleg_design.gap.effects.placing import ROBOT, driven_motors
+from hyperleg_design.gap.effects.strength import motor_strength
 from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.gap.model.subject import Subject
 

@@ -4,7 +4,7 @@ each place, an effect at all of its places, and sets of them by forward and back
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -45,6 +45,7 @@ class Search:
         rules: of the inference.
         places: effects and locations that are tried.
         threads: that share the work; they change no result.
+        show: takes lines of progress.
     """
 
     def __init__(
@@ -53,7 +54,9 @@ class Search:
         rules: InferenceRules,
         places: Sequence[tuple[str, str]],
         threads: int = 1,
+        show: Callable[[str], None] | None = None,
     ) -> None:
+        self.show = show
         self.evidence, self.rules, self.threads = evidence, rules, threads
         self.count = {name: sum(e == name for e, _ in places) for name, _ in places}
         self.traces = traces_of(evidence, places, threads)
@@ -84,6 +87,8 @@ class Search:
                 best = self._without_unlisted(current)
             if best is current:
                 break
+            if self.show is not None:
+                self.show(f"causes so far: {len(best.candidates)}")
             current, smaller = best, self._each_removed(best)
             best = self._improved(smaller[:-1], current)
             if best is not current:

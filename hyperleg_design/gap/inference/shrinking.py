@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.placing import motor_strength
+from hyperleg_design.gap.effects.strength import motor_strength
 from hyperleg_design.gap.inference import noise_model
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.model.memoized import memoized

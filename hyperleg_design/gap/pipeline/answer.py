@@ -14,6 +14,7 @@ from hyperleg_design import provenance
 from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.checks.coverage import beyond_references
 from hyperleg_design.gap.effects import UNLISTED
+from hyperleg_design.gap.effects.strength import has_placeholders
 from hyperleg_design.gap.experiments import experiment
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.gap_size import GapSize
@@ -288,6 +289,11 @@ class Answer:
             for cause, description in self.unexplained.unlisted_causes
             if cause.standing
         )
+        if has_placeholders(self.evidence.signals[0].subject):
+            texts.append(
+                "effort limits are far beyond what the joints need and count as unknown: give the "
+                "motors' own"
+            )
         if not self.evidence.references:
             texts.append(
                 "no reference logs: what the model leaves is judged by how well robots are known "

@@ -168,6 +168,7 @@ def diagnose_signals(
         seed=seed,
         threads=threads,
         checks=checks,
+        show=show,
     )
     return _beside(diagnosis, signals, references, effects, rules)
 

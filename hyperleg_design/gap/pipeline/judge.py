@@ -4,7 +4,7 @@ the answer.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.inference.assembly import evidence_of
@@ -29,6 +29,7 @@ def judge_signals(
     seed: int = 0,
     threads: int = 1,
     checks: Sequence[Check] = (),
+    show: Callable[[str], None] | None = None,
 ) -> Diagnosis:
     """Diagnose conditioned logs by the posterior of the hypotheses.
 
@@ -40,17 +41,20 @@ def judge_signals(
         seed: of the bootstrap.
         threads: that share the work; they change no result.
         checks: of the logs, for remarks.
+        show: takes lines of progress.
 
     Returns:
         The diagnosis.
     """
-    search, result = _searched(signals, references, places, rules, threads)
+    search, result = _searched(signals, references, places, rules, threads, show)
     apart: list[Difference] = []
     while len(apart) < len(references) - 1 and (odd := differences(search, result)):
+        if show is not None:
+            show("one reference differs from the others: searching again without what it has")
         # of two references that differ, either may be wrong: try both, and take the one without
         # which the causes under test gain less
         tried = [
-            (difference, *_searched(signals, mended, places, rules, threads))
+            (difference, *_searched(signals, mended, places, rules, threads, show))
             for difference in (odd if len(references) == FEWEST else odd[:1])
             for mended in [difference.taken_out(references)]
         ]
@@ -74,8 +78,9 @@ def _searched(
     places: Sequence[tuple[str, str]],
     rules: InferenceRules,
     threads: int,
+    show: Callable[[str], None] | None,
 ) -> tuple[Search, Result]:
-    search = Search(evidence_of(signals, references, rules), rules, places, threads)
+    search = Search(evidence_of(signals, references, rules), rules, places, threads, show)
     return search, search.result()
 
 

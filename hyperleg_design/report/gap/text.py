@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from hyperleg_design.gap.checks.check import Check
@@ -21,6 +21,8 @@ NOISE_FROM = {
 """What the size of the noise rests on."""
 LEAST_PROBABILITY = 0.005
 """Probability below which a rival is not printed; `diagnosis.json` has all."""
+LACKS = "model lacks"
+"""Beginning of a line on what acts in the references, too; it holds fitted numbers alone."""
 MOST_PLACES = 4
 """Names listed before the rest is counted."""
 
@@ -51,7 +53,9 @@ def _text(check: Check) -> str:
         )
     lines += [f"  signals {line}" for line in _signals(check.columns)]
     shown = [e for e in check.excitation if e.shown]
-    lines += [f"  shows   {e.effect}{_places(e.where)}: {e.why}" for e in shown]
+    columns = (column.column.partition("/") for column in check.columns)
+    joints = {joint for kind, _, joint in columns if kind == "position"}
+    lines += [f"  shows   {e.effect}{_places(e.where, joints)}: {e.why}" for e in shown]
     lines += [f"  cannot  {e.effect}: {e.why}" for e in check.excitation if not e.shown]
     if not check.usable:
         lines.append("  not fit for a diagnosis: mend the errors first")
@@ -62,9 +66,11 @@ def _text(check: Check) -> str:
     return "\n".join(lines)
 
 
-def _places(where: tuple[str, ...]) -> str:
+def _places(where: tuple[str, ...], joints: Collection[str]) -> str:
     if not where:
         return ""
+    if len(where) > 2 and set(where) == joints:
+        return f" at all {len(where)} joints"
     more = f" and {len(where) - MOST_PLACES} more" if len(where) > MOST_PLACES else ""
     return f" at {', '.join(where[:MOST_PLACES])}{more}"
 
@@ -215,7 +221,6 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
         ),
         ("cause", diagnosis["causes"]),
         ("rival", rivals[:4]),
-        ("model lacks", lacks),
     )
     for title, rows in groups:
         collapsed = together(rows) if title != "rival" else [[row] for row in rows]
@@ -253,6 +258,8 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
         ]
     if diagnosis["separating_experiment"]:
         lines.append(f"  to tell them apart: {_experiment(diagnosis['separating_experiment'])}")
+    for group in together(lacks):
+        lines += _cause_lines(LACKS, group)
     return "\n".join(lines)
 
 
@@ -265,6 +272,7 @@ def _cause_lines(title: str, group: Sequence[Mapping[str, Any]]) -> list[str]:
         or f"{span.name} {span_text(span.least, span.most, 4, '..')} {span.unit} "
         f"({span_text(span.low, span.high, 4, '..')})".replace("  ", " ")
         for span in spans(group)
+        if title != LACKS or (not span.words and span.low < span.high)
     )
     closes = ""
     if title == "cause":

@@ -12,7 +12,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.drives.rotor_inertia import OF_JOINT, OF_ROTOR
-from hyperleg_design.gap.effects.placing import joint_inertia, joint_strength
+from hyperleg_design.gap.effects.strength import joint_inertia, joint_strength
 from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.gap.inference.nuisance import nuisance_parameters
 from hyperleg_design.gap.model.subject import Subject

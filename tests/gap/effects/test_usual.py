@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.effects.placing import joint_strength
+from hyperleg_design.gap.effects.strength import joint_strength
 from hyperleg_design.gap.effects.usual import lateness, least_friction
 from hyperleg_design.gap.signals.loading import load_subject
 

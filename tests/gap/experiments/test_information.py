@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.effects.placing import joint_strength
+from hyperleg_design.gap.effects.strength import joint_strength
 from hyperleg_design.gap.experiments import information as info
 from hyperleg_design.gap.experiments.rehearsal import rehearsed
 from hyperleg_design.gap.signals.conditioning import condition

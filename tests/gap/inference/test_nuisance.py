@@ -6,7 +6,7 @@ import pytest
 import robots
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.effects.placing import joint_strength
+from hyperleg_design.gap.effects.strength import joint_strength
 from hyperleg_design.gap.inference.nuisance import (
     OF_WAY,
     TURNOVER,

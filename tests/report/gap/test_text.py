@@ -33,10 +33,18 @@ def test_what_a_log_can_and_cannot_show():
         line.startswith("  signals position (6), 200 Hz, steps of 0.001 rad, noise 0.000")
         for line in lines
     )
-    assert "  shows   coulomb_friction at a, b, c, d and 2 more: motion reverses" in lines
+    assert "  shows   coulomb_friction at all 6 joints: motion reverses" in lines
     assert "  cannot  imu_bias: no gyroscope and no accelerometer" in lines
     assert lines[-1] == "  fit for a diagnosis"
     assert len([line for line in lines if line.startswith(("  shows", "  cannot"))]) == 24
+
+
+def test_joints_that_show_an_effect_are_named_where_others_do_not():
+    moving = log(gains=dict.fromkeys("abcdef", (20.0, 1.0)))
+    still = {column: np.full(1000, 0.5) for column in ("position/f", "position_target/f")}
+    partly = moving.changed(signals=moving.signals | still)
+    lines = checks_text([check_log(partly)]).splitlines()
+    assert "  shows   coulomb_friction at a, b, c, d and 1 more: motion reverses" in lines
 
 
 def test_signals_of_unlike_joints_have_ranges_in_each_unit():

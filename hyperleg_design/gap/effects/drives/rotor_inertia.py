@@ -13,7 +13,7 @@ from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.kinds import MotorTorque
 from hyperleg_design.gap.effects.parameter import Parameter
-from hyperleg_design.gap.effects.placing import joint_inertia, motor_strength
+from hyperleg_design.gap.effects.strength import joint_inertia, motor_strength
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration

@@ -13,7 +13,8 @@ from hyperleg_design.gap.effects.families import SCALING, WITH_LOAD
 from hyperleg_design.gap.effects.kinds import MotorTorque
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placed import MotorHooks, Placed
-from hyperleg_design.gap.effects.placing import given, machine, motor_strength
+from hyperleg_design.gap.effects.placing import given, machine
+from hyperleg_design.gap.effects.strength import motor_strength
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals

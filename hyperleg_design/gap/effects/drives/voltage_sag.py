@@ -19,12 +19,10 @@ from hyperleg_design.gap.effects.placing import (
     commanded,
     driven_motors,
     is_commanded,
-    joint_strength,
     limited,
     machine,
-    motor_strength,
-    motor_strengths,
 )
+from hyperleg_design.gap.effects.strength import joint_strength, motor_strength, motor_strengths
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.loading import FULL
