@@ -18,6 +18,16 @@ def search(robot_files):
     return Search(evidence, InferenceRules(), places)
 
 
+@pytest.fixture(scope="session")
+def viscous(robot_files):
+    """Evidence of a robot with viscous friction at its knee, with one log of it as a reference."""
+    return diagnosed.evidence(
+        robot_files["coupled"],
+        diagnosed.run("viscous", 0),
+        references=(diagnosed.run("viscous", 1, role="reference"),),
+    )
+
+
 @pytest.fixture(scope="module")
 def errors(signals):
     """Nuisance parameters of that robot."""
