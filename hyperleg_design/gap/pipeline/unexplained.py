@@ -123,7 +123,7 @@ class Unexplained:
             text = (
                 f"the {channel.residual} residual of {channel.name} scatters up to "
                 f"{times[place]:.2g} times as much as in {usual}, in a way that follows no listed "
-                f"effect: look for play, a loose part or a disturbed signal"
+                f"effect: look for play, a loose part, something that pushes, or a disturbed signal"
             )
             shapes.append(residual_shape("noise", channel.name, text, 0.0))
         return shapes
