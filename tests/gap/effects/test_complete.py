@@ -39,7 +39,7 @@ def catalogue(tmp_path, monkeypatch):
         (tmp_path / "sticky.py").write_text(text)
         monkeypatch.setattr(effects, "__path__", [*effects.__path__, str(tmp_path)])
         try:
-            return effects._found()
+            return effects._discovered_effects()
         finally:
             sys.modules.pop("hyperleg_design.gap.effects.sticky", None)
             vars(effects).pop("sticky", None)
