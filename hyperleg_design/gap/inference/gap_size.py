@@ -8,7 +8,7 @@ own is not much smaller.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -37,7 +37,7 @@ class GapSize:
     """The same with the causes."""
     noise: np.ndarray
     """The same that no cause can go below."""
-    rules: InferenceRules = field(default_factory=InferenceRules)
+    rules: InferenceRules
 
     @classmethod
     def of(

@@ -56,7 +56,7 @@ class Search:
         threads: int = 1,
         show: Callable[[str], None] | None = None,
     ) -> None:
-        self.show = show
+        self.show = show or (lambda _: None)
         self.evidence, self.rules, self.threads = evidence, rules, threads
         self.count = {name: sum(e == name for e, _ in places) for name, _ in places}
         self.traces = traces_of(evidence, places, threads)
@@ -87,8 +87,7 @@ class Search:
                 best = self._without_unlisted(current)
             if best is current:
                 break
-            if self.show is not None:
-                self.show(f"causes so far: {len(best.candidates)}")
+            self.show(f"causes so far: {len(best.candidates)}")
             current, smaller = best, self._each_removed(best)
             best = self._improved(smaller[:-1], current)
             if best is not current:

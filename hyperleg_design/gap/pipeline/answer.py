@@ -90,8 +90,7 @@ class Answer:
         )
         return Diagnosis(
             verdict="unknown"
-            if posterior.verdict == "none"
-            and (self.unexplained.cycling or self.unexplained.ringing)
+            if posterior.verdict == "none" and self.unexplained.hides_faults
             else posterior.verdict,
             gap=self.gap(naming),
             where=self.where(),

@@ -46,15 +46,15 @@ def judge_signals(
     Returns:
         The diagnosis.
     """
-    search, result = _searched(signals, references, places, rules, threads, show)
+    say = show or (lambda _: None)
+    search, result = _searched(signals, references, places, rules, threads, say)
     apart: list[Difference] = []
     while len(apart) < len(references) - 1 and (odd := differences(search, result)):
-        if show is not None:
-            show("one reference differs from the others: searching again without what it has")
+        say("one reference differs from the others: searching again without what it has")
         # of two references that differ, either may be wrong: try both, and take the one without
         # which the causes under test gain less
         tried = [
-            (difference, *_searched(signals, mended, places, rules, threads, show))
+            (difference, *_searched(signals, mended, places, rules, threads, say))
             for difference in (odd if len(references) == FEWEST else odd[:1])
             for mended in [difference.taken_out(references)]
         ]
@@ -78,9 +78,9 @@ def _searched(
     places: Sequence[tuple[str, str]],
     rules: InferenceRules,
     threads: int,
-    show: Callable[[str], None] | None,
+    say: Callable[[str], None],
 ) -> tuple[Search, Result]:
-    search = Search(evidence_of(signals, references, rules), rules, places, threads, show)
+    search = Search(evidence_of(signals, references, rules), rules, places, threads, say)
     return search, search.result()
 
 

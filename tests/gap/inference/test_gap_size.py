@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.inference.gap_size import GapSize
+from hyperleg_design.gap.inference.rules import InferenceRules
 
 COUNT = 40
 
@@ -40,7 +41,9 @@ def size(before, after, noise, residuals=("motion", "motion"), shown=None, hinge
     held = SimpleNamespace(
         before=spread(before), after=spread(after), noise=spread(noise), trace=trace
     )
-    return GapSize(evidence, held, *(np.array(one, float) for one in (before, after, noise)))
+    return GapSize(
+        evidence, held, *(np.array(one, float) for one in (before, after, noise)), InferenceRules()
+    )
 
 
 def test_the_share_closed_is_that_of_the_root_mean_squares_beyond_noise():

@@ -2,34 +2,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from noisy_channels import noisy_channel, noisy_scales
 
-from hyperleg_design.gap.inference.channels.channel import Channel
-from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline.unexplained import Unexplained
-
-BANDS = 2
-
-
-def channel(name):
-    own = SimpleNamespace(
-        name=name,
-        residual="motion",
-        bands_tested=np.arange(BANDS),
-        bands_alike=np.arange(BANDS) + BANDS,
-    )
-    for method in ("usual_noise", "noisy"):
-        setattr(own, method, getattr(Channel, method).__get__(own))
-    return own
 
 
 def unexplained(noises, after, remainder=1.0, cycles=((), ())):
     """Of channels with some noise over that of the references, and mean squares that are left."""
-    channels = tuple(channel(name) for name in noises)
-    scales = [
-        Scales(np.r_[np.full(BANDS, noise), np.ones(BANDS)], 0.0, 0.0, 0.0)
-        for noise in noises.values()
-    ]
+    channels = tuple(noisy_channel(name=name, residual="motion") for name in noises)
+    scales = [noisy_scales(noise=noise) for noise in noises.values()]
 
     def log(joints):
         found = SimpleNamespace(
