@@ -12,10 +12,10 @@ In the order in which a diagnosis passes them:
 | which residual does an effect leave at a place, linearised? | `linearisation`, `cause`; at every place: `effect_traces` |
 | ... beside other causes that change what it acts on? | `interactions` |
 | what keeps a cause from scaling noise away? | `endogenous` (torques), `shrinking` (belts), `smoothing` (slow drives) |
-| how probable is a set of causes before any log? | `cause_prior` |
-| how large are the causes of a set, and what is its evidence? | `hypothesis`, `hypothesis_fit`, `bounded_least_squares` |
-| which sets are tried? | `proposals` (what is worth a fit), `search` |
-| which reference log differs from the others? | `reference_differences` |
+| how probable is a set of causes before any log? | `hypotheses/cause_prior` |
+| how large are the causes of a set, and what is its evidence? | `hypothesis`, `hypothesis_fit`, `bounded_least_squares` there |
+| which sets are tried? | `proposals` (what is worth a fit), `search` there |
+| which reference log differs from the others? | `hypotheses/reference_differences` |
 | how large is the gap, and how much of it closes on data that were left out? | `cross_validation`, `gap_size` |
 | does something act that the catalogue lacks? | `unlisted` |
 | which verdict, with which probabilities? | `posterior` |

@@ -11,7 +11,13 @@ from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.channel import Channel
 from hyperleg_design.gap.inference.channels.discrepancy_posterior import discrepancy_posterior
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.hypothesis import Hypothesis, Stack, reduced, shifted, solve
+from hyperleg_design.gap.inference.hypotheses.hypothesis import (
+    Hypothesis,
+    Stack,
+    reduced,
+    shifted,
+    solve,
+)
 from hyperleg_design.gap.inference.rules import InferenceRules
 
 

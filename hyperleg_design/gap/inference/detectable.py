@@ -17,10 +17,10 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS, UNLISTED
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.inference.cause_prior import usual_error
 from hyperleg_design.gap.inference.effect_traces import NotJudged
-from hyperleg_design.gap.inference.hypothesis import Hypothesis
-from hyperleg_design.gap.inference.search import Search
+from hyperleg_design.gap.inference.hypotheses.cause_prior import usual_error
+from hyperleg_design.gap.inference.hypotheses.hypothesis import Hypothesis
+from hyperleg_design.gap.inference.hypotheses.search import Search
 from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.model.subject import Subject
 

@@ -16,7 +16,7 @@ from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.spanned import SpannedEffect
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.hypothesis import Name
+from hyperleg_design.gap.inference.hypotheses.hypothesis import Name
 from hyperleg_design.gap.inference.linearisation import (
     SHOWN,
     linearise,

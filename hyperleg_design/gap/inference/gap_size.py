@@ -15,7 +15,7 @@ import numpy as np
 
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cross_validation import Prediction
-from hyperleg_design.gap.inference.hypothesis import Hypothesis
+from hyperleg_design.gap.inference.hypotheses.hypothesis import Hypothesis
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.unlisted import makes_noise
 from hyperleg_design.gap.model.joint_units import unit_at

@@ -18,11 +18,16 @@ import numpy as np
 
 from hyperleg_design.gap.effects import UNLISTED
 from hyperleg_design.gap.inference.assembly import Evidence
-from hyperleg_design.gap.inference.cause_prior import beyond_usual
 from hyperleg_design.gap.inference.gap_size import GapSize
-from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis, Name
+from hyperleg_design.gap.inference.hypotheses.cause_prior import beyond_usual
+from hyperleg_design.gap.inference.hypotheses.hypothesis import (
+    EVERYWHERE,
+    Candidate,
+    Hypothesis,
+    Name,
+)
+from hyperleg_design.gap.inference.hypotheses.search import Result
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.search import Result
 from hyperleg_design.gap.inference.unlisted import unlisted
 
 

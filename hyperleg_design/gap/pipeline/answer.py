@@ -18,12 +18,12 @@ from hyperleg_design.gap.effects.strength import has_placeholders
 from hyperleg_design.gap.experiments import experiment
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.gap_size import GapSize
-from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
+from hyperleg_design.gap.inference.hypotheses.hypothesis import Candidate, Hypothesis
+from hyperleg_design.gap.inference.hypotheses.reference_differences import Difference
+from hyperleg_design.gap.inference.hypotheses.search import Result
 from hyperleg_design.gap.inference.intervals import intervals
 from hyperleg_design.gap.inference.posterior import Posterior, expanded
-from hyperleg_design.gap.inference.reference_differences import Difference
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.search import Result
 from hyperleg_design.gap.pipeline.unexplained import Unexplained
 from hyperleg_design.gap.results.diagnosis import (
     LEAST_SHARE,

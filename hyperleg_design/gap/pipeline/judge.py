@@ -11,10 +11,14 @@ from hyperleg_design.gap.inference.assembly import evidence_of
 from hyperleg_design.gap.inference.cross_validation import predicted
 from hyperleg_design.gap.inference.detectable import detectable
 from hyperleg_design.gap.inference.gap_size import GapSize
+from hyperleg_design.gap.inference.hypotheses.reference_differences import (
+    FEWEST,
+    Difference,
+    differences,
+)
+from hyperleg_design.gap.inference.hypotheses.search import Result, Search
 from hyperleg_design.gap.inference.posterior import posterior_of
-from hyperleg_design.gap.inference.reference_differences import FEWEST, Difference, differences
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.search import Result, Search
 from hyperleg_design.gap.pipeline.answer import Answer
 from hyperleg_design.gap.results.diagnosis import Diagnosis
 from hyperleg_design.gap.signals.signals import Signals

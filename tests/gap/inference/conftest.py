@@ -1,9 +1,9 @@
 import diagnosed
 import pytest
 
+from hyperleg_design.gap.inference.hypotheses.search import Search
 from hyperleg_design.gap.inference.nuisance import nuisance_parameters
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.search import Search
 
 
 @pytest.fixture(scope="session")

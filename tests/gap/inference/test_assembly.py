@@ -9,7 +9,7 @@ from causes import unbounded
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference.endogenous import Factor, joined
-from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit
+from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit
 from hyperleg_design.gap.inference.linearisation import linearise
 from hyperleg_design.gap.inference.rules import InferenceRules
 

@@ -12,7 +12,7 @@ from causes import unbounded
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.cross_validation import healthy_share, predicted
-from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
+from hyperleg_design.gap.inference.hypotheses.hypothesis import Candidate, Hypothesis
 from hyperleg_design.gap.inference.rules import InferenceRules
 from tests.gap.inference.channels.test_channel import SCALES, dense, made
 

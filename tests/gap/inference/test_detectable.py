@@ -9,8 +9,8 @@ import pytest
 from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.cause_prior import usual_error
 from hyperleg_design.gap.inference.detectable import detectable, usual_shape
+from hyperleg_design.gap.inference.hypotheses.cause_prior import usual_error
 
 
 @pytest.fixture(scope="module")

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.hypothesis import Candidate, Hypothesis
+from hyperleg_design.gap.inference.hypotheses.hypothesis import Candidate, Hypothesis
+from hyperleg_design.gap.inference.hypotheses.search import Result
 from hyperleg_design.gap.inference.posterior import posterior_of
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.search import Result
 
 RULES = InferenceRules()
 HEALTHY = Scales(np.ones(1), 0.0, np.log(0.3))

@@ -9,7 +9,7 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.inference.reference_differences import Difference
+from hyperleg_design.gap.inference.hypotheses.reference_differences import Difference
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline import judge
 from hyperleg_design.gap.pipeline.judge import judge_signals

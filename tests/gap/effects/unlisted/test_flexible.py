@@ -9,7 +9,7 @@ from pendulum import Wrong
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import UNLISTED, WEIGHED
 from hyperleg_design.gap.inference.assembly import evidence_of
-from hyperleg_design.gap.inference.cause_prior import prior_odds
+from hyperleg_design.gap.inference.hypotheses.cause_prior import prior_odds
 from hyperleg_design.gap.inference.linearisation import linearise
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline.diagnose import diagnose_signals

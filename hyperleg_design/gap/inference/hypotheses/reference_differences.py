@@ -17,11 +17,11 @@ import numpy as np
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.effect_traces import Starts, Traces
-from hyperleg_design.gap.inference.hypothesis import Hypothesis, Name
-from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit, limited_scales
+from hyperleg_design.gap.inference.hypotheses.hypothesis import Hypothesis, Name
+from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit, limited_scales
+from hyperleg_design.gap.inference.hypotheses.proposals import Proposer
+from hyperleg_design.gap.inference.hypotheses.search import Result, Search
 from hyperleg_design.gap.inference.linearisation import SHOWN, reach
-from hyperleg_design.gap.inference.proposals import Proposer
-from hyperleg_design.gap.inference.search import Result, Search
 from hyperleg_design.gap.signals.signals import Signals
 
 FEWEST = 2

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.hypothesis import Candidate
-from hyperleg_design.gap.inference.hypothesis_fit import (
+from hyperleg_design.gap.inference.hypotheses.hypothesis import Candidate
+from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import (
     HypothesisFit,
     limited_scales,
 )

@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hyperleg_design.gap.inference.bounded_least_squares import within_bounds
+from hyperleg_design.gap.inference.hypotheses.bounded_least_squares import within_bounds
 
 
 @given(st.integers(1, 8), st.integers(0, 10**6))

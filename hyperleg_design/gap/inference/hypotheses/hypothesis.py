@@ -13,11 +13,11 @@ import numpy as np
 from scipy.special import erfcx
 
 from hyperleg_design.gap.inference.assembly import Evidence
-from hyperleg_design.gap.inference.bounded_least_squares import within_bounds
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.endogenous import Factor, joined
+from hyperleg_design.gap.inference.hypotheses.bounded_least_squares import within_bounds
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.shrinking import Shrinking
 

@@ -14,8 +14,8 @@ from hyperleg_design.gap.inference.assembly import evidence_of
 from hyperleg_design.gap.inference.channels.scale_fit import first_scales
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, Starts, traces_of
-from hyperleg_design.gap.inference.hypothesis import Stack, reduced, shifted, solve
-from hyperleg_design.gap.inference.proposals import LARGEST, Proposer
+from hyperleg_design.gap.inference.hypotheses.hypothesis import Stack, reduced, shifted, solve
+from hyperleg_design.gap.inference.hypotheses.proposals import LARGEST, Proposer
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject

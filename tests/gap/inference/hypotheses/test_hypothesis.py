@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import multivariate_normal, norm
 
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.hypothesis import reduced, shifted, solve
+from hyperleg_design.gap.inference.hypotheses.hypothesis import reduced, shifted, solve
 from hyperleg_design.gap.inference.rules import InferenceRules
 from tests.gap.inference.channels.test_channel import dense, made
 

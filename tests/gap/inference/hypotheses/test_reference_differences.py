@@ -4,9 +4,9 @@ import diagnosed
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.inference.reference_differences import differences
+from hyperleg_design.gap.inference.hypotheses.reference_differences import differences
+from hyperleg_design.gap.inference.hypotheses.search import Search
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.search import Search
 
 PLACES = [
     (effect, joint)

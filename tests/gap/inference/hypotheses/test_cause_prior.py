@@ -8,14 +8,14 @@ from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.cause_prior import (
+from hyperleg_design.gap.inference.hypotheses.cause_prior import (
     beyond_usual,
     log_chance,
     log_prior,
     prior_odds,
     usual_error,
 )
-from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis
+from hyperleg_design.gap.inference.hypotheses.hypothesis import EVERYWHERE, Candidate, Hypothesis
 from hyperleg_design.gap.inference.rules import InferenceRules
 
 RULES = InferenceRules()

@@ -12,9 +12,9 @@ import pytest
 
 from hyperleg_design.gap.inference.effect_traces import NotJudged, traces_of
 from hyperleg_design.gap.inference.endogenous import Factor
-from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate
+from hyperleg_design.gap.inference.hypotheses.hypothesis import EVERYWHERE, Candidate
+from hyperleg_design.gap.inference.hypotheses.search import Search, without_gain_from_torques
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.search import Search, without_gain_from_torques
 
 VISCOUS, DRY = ("viscous_friction", "knee", False), ("coulomb_friction", "hip", False)
 

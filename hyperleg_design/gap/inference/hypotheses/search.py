@@ -12,14 +12,24 @@ import numpy as np
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.cause_prior import log_chance
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, traces_of
 from hyperleg_design.gap.inference.endogenous import Factor
-from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis, Name, Stack
-from hyperleg_design.gap.inference.hypothesis_fit import HypothesisFit, are_near, limited_scales
-from hyperleg_design.gap.inference.proposals import Proposal, Proposer
+from hyperleg_design.gap.inference.hypotheses.cause_prior import log_chance
+from hyperleg_design.gap.inference.hypotheses.hypothesis import (
+    EVERYWHERE,
+    Candidate,
+    Hypothesis,
+    Name,
+    Stack,
+)
+from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import (
+    HypothesisFit,
+    are_near,
+    limited_scales,
+)
+from hyperleg_design.gap.inference.hypotheses.proposals import Proposal, Proposer
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.threads import spread
 

@@ -13,13 +13,13 @@ from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.families import IN_DRIVES, INERTIAL
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.cause_prior import log_prior
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scale_fit import STEPS, first_scales, fitted
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, Traces
 from hyperleg_design.gap.inference.endogenous import Factor, joined
-from hyperleg_design.gap.inference.hypothesis import (
+from hyperleg_design.gap.inference.hypotheses.cause_prior import log_prior
+from hyperleg_design.gap.inference.hypotheses.hypothesis import (
     Candidate,
     Hypothesis,
     Name,
@@ -28,9 +28,9 @@ from hyperleg_design.gap.inference.hypothesis import (
     shifted,
     solve,
 )
+from hyperleg_design.gap.inference.hypotheses.proposals import Proposal
 from hyperleg_design.gap.inference.interactions import after, carrying
 from hyperleg_design.gap.inference.linearisation import linearise
-from hyperleg_design.gap.inference.proposals import Proposal
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.inference.threads import spread

@@ -18,7 +18,7 @@ from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, Starts, Traces
 from hyperleg_design.gap.inference.endogenous import Factor, factors_of, held_back_in_all
-from hyperleg_design.gap.inference.hypothesis import ALIKE, Name, Solution, Stack, solve
+from hyperleg_design.gap.inference.hypotheses.hypothesis import ALIKE, Name, Solution, Stack, solve
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.shrinking import Shrinking
 from hyperleg_design.gap.inference.threads import spread

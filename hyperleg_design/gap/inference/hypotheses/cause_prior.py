@@ -11,7 +11,12 @@ from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.hypothesis import EVERYWHERE, Candidate, Hypothesis, Name
+from hyperleg_design.gap.inference.hypotheses.hypothesis import (
+    EVERYWHERE,
+    Candidate,
+    Hypothesis,
+    Name,
+)
 from hyperleg_design.gap.inference.rules import InferenceRules
 
 
