@@ -175,8 +175,8 @@ def _notes(subject: Subject, torque: bool) -> tuple[str, ...]:
         )
     if not np.isfinite(subject.no_load_speed).all():
         notes.append(
-            "Speed limits of some motors are unknown: joints are assumed to turn by at most "
-            f"{FASTEST:g} rad/s."
+            "Speed limits of some motors are unknown: joints are assumed to move by at most "
+            f"{FASTEST:g} rad/s, or m/s of a slide."
         )
     if knows_gains(subject):
         notes.append(

@@ -48,7 +48,7 @@ def intervals(
         reach = NORMAL * np.hypot(deviation[i], rough)
         low, high = max(values[i] - reach, cause.low[i]), min(values[i] + reach, cause.high[i])
         unit = unit_at(subject, effect.kind, cause.location, parameter.unit)
-        stated[parameter.name] = Value(float(values[i]), float(low), float(high), unit)
+        stated[parameter.name] = _value(values[i], low, high, unit)
     return stated | _derived(subject, cause, values, stated)
 
 
@@ -69,13 +69,9 @@ def _derived(
             moves = [t[name][0] - value for t in tried if name in t]
             below[name] = float(np.hypot(below[name], min(*moves, 0.0)))
             above[name] = float(np.hypot(above[name], max(*moves, 0.0)))
+    at = subject, effect.kind, cause.location
     derived = {
-        name: Value(
-            value,
-            value - below[name],
-            value + above[name],
-            unit_at(subject, effect.kind, cause.location, unit),
-        )
+        name: _value(value, value - below[name], value + above[name], unit_at(*at, unit))
         for name, (value, unit) in middle.items()
     }
     return {
@@ -83,3 +79,8 @@ def _derived(
         for name, value in derived.items()
         if np.isfinite([value.value, value.low, value.high]).all()
     }
+
+
+def _value(value: float, low: float, high: float, unit: str) -> Value:
+    """A value without negative zeros, which reports would print as -0."""
+    return Value(float(value) + 0.0, float(low) + 0.0, float(high) + 0.0, unit)

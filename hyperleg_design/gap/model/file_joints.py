@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from hyperleg_design.errors import InputError
 
 
 def single_joints(model: Any) -> list[int]:
@@ -26,6 +29,25 @@ def _single(model: Any) -> tuple[np.ndarray, np.ndarray]:
     kinds = mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE
     joints = np.flatnonzero(np.isin(model.jnt_type, kinds))
     return joints, np.asarray(model.jnt_dofadr)[joints]
+
+
+def refuse_negative(model: Any, path: Path) -> None:
+    """Refuse friction, damping and rotors below zero, which MuJoCo compiles and no robot has.
+
+    Args:
+        model: the compiled model.
+        path: of its file.
+
+    Raises:
+        InputError: some joint has one.
+    """
+    joints, dofs = _single(model)
+    for field in ("frictionloss", "damping", "armature"):
+        values = getattr(model, f"dof_{field}")[dofs]
+        for joint, value in zip(joints.tolist(), values.tolist(), strict=True):
+            if value < 0:
+                where = f"{model.joint(joint).name}.{field}"
+                raise InputError(str(path), where, value, "is negative: give 0 or more")
 
 
 def friction(model: Any) -> tuple[np.ndarray, np.ndarray]:

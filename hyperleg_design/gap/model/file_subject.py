@@ -44,6 +44,7 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
     all_joints = [j.name for j in spec.joints]
     free_joints = robot_file.free_joints(all_joints, known, path.name)
     whole = robot_file.compiled(spec, path)
+    file_joints.refuse_negative(whole, path)
     drives = file_drives.read_drives(whole, free_joints)
     indices = [j for j in file_joints.single_joints(whole) if whole.joint(j).name in free_joints]
     notes += fold_into_joints(

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import mujoco
 import numpy as np
+import pytest
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.gap.model import file_joints
 
 TEXT = """<mujoco><worldbody><body name="cart"><freejoint/><geom size="0.1" mass="1"/>
@@ -34,3 +38,12 @@ def test_friction_is_taken_out_and_springs_stay():
     file_joints.take_out_friction(model)
     assert not np.concatenate(file_joints.friction(model)).any()
     assert file_joints.springs(model)[0].tolist() == [0.0, 7.0]
+
+
+@pytest.mark.parametrize("field", ["frictionloss", "damping", "armature"])
+def test_friction_and_rotors_below_zero_are_refused(field):
+    model = mujoco.MjModel.from_xml_string(TEXT)
+    file_joints.refuse_negative(model, Path("arm.xml"))
+    getattr(model, f"dof_{field}")[model.joint("hinge").dofadr] = -0.1
+    with pytest.raises(InputError, match=rf"arm.xml: hinge.{field} = -0.1: is negative"):
+        file_joints.refuse_negative(model, Path("arm.xml"))
