@@ -26,7 +26,7 @@ from hyperleg_design.gap.inference.samples import SLOWEST_BANDS, Samples, gather
 from hyperleg_design.gap.signals import filtering, resting
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import FilteredLog, place_of
-from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import OF_SENSORS, Signals
 from hyperleg_design.gap.signals.sliding import dry_friction
 
 MOST_BANDS = 5
@@ -208,7 +208,7 @@ def evidence_of(
     errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), rubbing)
     errors.sort(key=lambda error: not error.steady)
     sets = [_set(tests, errors, rules, tested=True)]
-    if not len(sets[0].samples.value):
+    if all(row.residual_name in OF_SENSORS for row in sets[0].samples.rows):
         raise InputError(
             tests[0].log.name,
             "",

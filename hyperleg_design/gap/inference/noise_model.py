@@ -21,7 +21,7 @@ from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import Band, FilteredLog
 from hyperleg_design.gap.signals.ground import footings
-from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.signals import OF_SENSORS, Signals
 from hyperleg_design.gap.signals.sliding import dry_friction
 from hyperleg_design.gap.signals.stop_operator import stop
 
@@ -41,6 +41,8 @@ FEWEST = 64
 LEAST = 1e-4
 """Least standard deviation over the torque that a joint is made for [-]: what single precision and
 rounding in logs leave."""
+WITHOUT_DRIVES = {"base": 100.0, "ground": 100.0, "gyro": 1.0, "accelerometer": 10.0}
+"""What stands for that torque in residuals that are of no drive [N, Nm, rad/s, m/s^2]; assumed."""
 
 
 def expected(filtered_log: FilteredLog, rules: NoiseRules) -> list[np.ndarray]:
@@ -70,6 +72,10 @@ def _row(
     residual = np.where(
         filtered_log.mask[row], signals.residual[place.residual_name][:, place.column], 0.0
     )
+    if place.residual_name in OF_SENSORS:  # a constant error is no noise
+        residual = np.where(
+            filtered_log.mask[row], residual - residual[filtered_log.mask[row]].mean(), 0.0
+        )
     density = _capped(
         filtered_log,
         row,
@@ -146,6 +152,8 @@ def _loads(filtered_log: FilteredLog) -> tuple[dict[str, np.ndarray], dict[str, 
             moving[residual_name] = np.stack([total] * 3 + [0.2 * total] * 3, -1)
         elif residual_name == "ground" and signals.contact is not None:
             moving[residual_name] = np.repeat(np.linalg.norm(signals.contact, axis=-1), 3, axis=-1)
+        elif residual_name in OF_SENSORS:
+            moving[residual_name] = np.zeros_like(residual)
         elif residual_name == "transmission":
             moving[residual_name] = signals.velocity @ subject.joint_from_motor
         elif signals.command is not None and residual.shape[1] == signals.command.shape[1]:
@@ -159,8 +167,8 @@ def _strength(filtered_log: FilteredLog, row: int) -> float:
     place, subject = filtered_log.rows[row], filtered_log.signals.subject
     if place.residual_name == "motion":
         return float(joint_strength(subject)[place.column])
-    if place.residual_name in ("base", "ground"):
-        return 100.0
+    if place.residual_name in WITHOUT_DRIVES:
+        return WITHOUT_DRIVES[place.residual_name]
     if place.residual_name == "transmission":
         fastest = float(subject.no_load_speed[place.column])
         return fastest if np.isfinite(fastest) else FAST

@@ -14,6 +14,7 @@ from hyperleg_design import provenance
 from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.checks.coverage import beyond_references
 from hyperleg_design.gap.effects import UNLISTED
+from hyperleg_design.gap.effects.sensors.imu_bias import IMU
 from hyperleg_design.gap.effects.strength import has_placeholders
 from hyperleg_design.gap.experiments import experiment
 from hyperleg_design.gap.inference.assembly import Evidence
@@ -256,6 +257,8 @@ class Answer:
                 name = channel.name.rsplit("_", 1)[0]
             if channel.residual == "base":
                 name = "robot"
+            if kind == "sensor":
+                name = IMU
             shares[name, kind] = shares.get((name, kind), 0.0) + value
         total = sum(shares.values())
         if total <= 0:

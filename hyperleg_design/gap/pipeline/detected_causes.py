@@ -1,13 +1,10 @@
-"""Add causes that no residual shows to a diagnosis: a constant error of the IMU, feet that slide or
-sink.
-"""
+"""Add causes that no residual shows to a diagnosis: feet that slide or sink."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 
-from hyperleg_design.gap.inference.detectors.imu_offset import OFFSET, PLACE, Offset
 from hyperleg_design.gap.inference.detectors.sinking import SINKS
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.inference.detectors.slipping import SLIPS
@@ -21,58 +18,11 @@ from hyperleg_design.gap.results.diagnosis import (
     residual_shape,
 )
 
-APART = (OFFSET, SLIPS, SINKS)
+APART = (SLIPS, SINKS)
 """Names of these findings in `Diagnosis.residual_shape`."""
 OF_FEET = 0.5
 """Share of an unknown gap that lies in the residuals of sliding or sinking feet, from which their
 ground explains it [-]."""
-
-
-def of_imu(diagnosis: Diagnosis, offset: Offset, certain: float) -> Diagnosis:
-    """Add an IMU's constant error to a diagnosis: beside what is named already, or instead of
-    nothing; of an unknown gap it is a part.
-
-    If the error is named already, its sizes are replaced where the given ones are surer. A vertical
-    that leans is no effect of the catalogue, but may be an error of the accelerometer: alone, it is
-    an unknown gap.
-
-    Args:
-        diagnosis: the diagnosis so far.
-        offset: error of the IMU.
-        certain: probability of what is certain, `PosteriorRules.most_certain`.
-
-    Returns:
-        The diagnosis with it.
-    """
-    if any((c.effect, c.location) == PLACE for c in diagnosis.causes):
-        causes = tuple(
-            _surer(c, offset) if (c.effect, c.location) == PLACE else c for c in diagnosis.causes
-        )
-        return diagnosis if causes == diagnosis.causes else replace(diagnosis, causes=causes)
-    shape = residual_shape(OFFSET, PLACE[1], offset.sentence, offset.closed)
-    rivals = tuple(r for r in diagnosis.rivals if (r.effect, r.location) != PLACE)
-    diagnosis = replace(diagnosis, residual_shape=(shape, *diagnosis.residual_shape), rivals=rivals)
-    cause = Named(*PLACE, certain, offset.closed, offset.parameters)
-    if diagnosis.causes:
-        return diagnosis if offset.leans else replace(diagnosis, causes=(*diagnosis.causes, cause))
-    if diagnosis.verdict == "unknown" or offset.leans:
-        return replace(_with_part(diagnosis, cause), verdict="unknown")
-    gap = Shrinkage(
-        offset.size, offset.left, 0.0, offset.closed, (offset.closed, offset.closed), offset.unit
-    )
-    return _instead(diagnosis, (cause,), gap, (Place(PLACE[1], "sensor", "all", 1.0),))
-
-
-def _surer(cause: Named, offset: Offset) -> Named:
-    """Replace values of an IMU's errors by those from other sensors where these have narrower
-    intervals; a value that no other sensor shows has an interval of length zero there.
-    """
-    narrower = {
-        n: p
-        for n, p in offset.parameters.items()
-        if 0 < p.high - p.low < cause.parameters[n].high - cause.parameters[n].low
-    }
-    return replace(cause, parameters={**cause.parameters, **narrower})
 
 
 def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot], certain: float) -> Diagnosis:

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.checks.check import Check, check_log
-from hyperleg_design.gap.inference.detectors.imu_offset import PLACE, imu_offset
 from hyperleg_design.gap.inference.detectors.sinking import EFFECT as SOFT
 from hyperleg_design.gap.inference.detectors.sinking import sinks
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
@@ -19,7 +18,7 @@ from hyperleg_design.gap.inference.effect_traces import places
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.subject import Subject
-from hyperleg_design.gap.pipeline.detected_causes import of_feet, of_imu
+from hyperleg_design.gap.pipeline.detected_causes import of_feet
 from hyperleg_design.gap.pipeline.judge import judge_signals
 from hyperleg_design.gap.results.diagnosis import Diagnosis
 from hyperleg_design.gap.signals.conditioning import condition
@@ -180,8 +179,8 @@ def _beside(
     effects: Sequence[str] | None,
     rules: InferenceRules,
 ) -> Diagnosis:
-    """With what feet and the IMU tell that is in no residual, where other logs, or the other half
-    of one, foretell the main part of it.
+    """With what feet tell that is in no residual, where other logs, or the other half of one,
+    foretell the main part of it.
     """
     least, certain = rules.posterior.main_part, rules.posterior.most_certain
     for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
@@ -189,9 +188,4 @@ def _beside(
             grounds = tell(signals, references)
             foretold = tuple(ground for ground in grounds if ground.closed >= least)
             diagnosis = of_feet(diagnosis, foretold, certain)
-    if effects is not None and PLACE[0] not in effects:
-        return diagnosis
-    offset = imu_offset(signals, references, rules.cause.usual)
-    if offset is None or offset.closed < least:
-        return diagnosis
-    return of_imu(diagnosis, offset, certain)
+    return diagnosis

@@ -28,6 +28,7 @@ from hyperleg_design.gap.signals.channels import (
 )
 from hyperleg_design.gap.signals.control import control_residual
 from hyperleg_design.gap.signals.ground import ground_residual
+from hyperleg_design.gap.signals.inertial import inertial_residuals
 from hyperleg_design.gap.signals.joint_motion import joint_motion
 from hyperleg_design.gap.signals.limit_cycle import limit_cycle
 from hyperleg_design.gap.signals.sensed import sensed_velocity
@@ -80,7 +81,7 @@ def condition(log: Log, subject: Subject) -> Signals:
     seen = np.where(driven_by_duty(subject), np.nan, velocity)
     measured = _measured(log, subject, ticks)
     command, jump, target, control, others = _command(log, subject, ticks, motion, seen, measured)
-    residual: dict[str, np.ndarray] = {}
+    residual = inertial_residuals(log, subject, ticks)
     speed, slip, refused = _motor_speeds(log, subject, ticks, motion.first, lacking)
     notes += refused
     if slip is not None:

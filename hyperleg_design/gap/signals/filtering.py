@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.gap.signals.resting import moving, rubbing
-from hyperleg_design.gap.signals.signals import Signals, row_names
+from hyperleg_design.gap.signals.signals import OF_SENSORS, Signals, row_names
 
 EDGES = (0.5, 1.5, 4.0, 10.0)
 """Between bands [Hz]; the last band ends at a row's cutoff."""
@@ -34,8 +34,9 @@ OF_SPEEDS = 0.5
 the smoother passes 98 %."""
 WITHOUT_BANDWIDTH = 10.0
 """Cutoff of joints whose smoother's bandwidth is unknown [Hz]."""
-WITHOUT_JOINTS = {"base": 10.0, "ground": 20.0}
-"""Cutoff of residuals whose rows are no joints [Hz]."""
+WITHOUT_JOINTS = {"base": 10.0, "ground": 20.0, "gyro": 1.0, "accelerometer": 1.0}
+"""Cutoff of residuals whose rows are no joints [Hz]; errors of an IMU hardly change, so that one
+band holds them."""
 OVERLAP = 0.15
 """Half width of the transition between bands, over its frequency."""
 KNOWN = 0.7
@@ -188,11 +189,14 @@ def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> Filtere
             rows.append(Row(residual_name, column, name, cutoff))
             masks.append(mask)
     length = next_fast_len(len(signals.time), real=True)
-    bands = tuple(
-        _bands(row, mask, length, signals.step) for row, mask in zip(rows, masks, strict=True)
-    )
+    bands = [_bands(row, mask, length, signals.step) for row, mask in zip(rows, masks, strict=True)]
+    kept = [row for row, own in enumerate(bands) if any(len(band.used) for band in own)]
     return FilteredLog(
-        signals, tuple(rows), np.array(masks).reshape(len(rows), len(signals.time)), bands, length
+        signals,
+        tuple(rows[row] for row in kept),
+        np.array([masks[row] for row in kept]).reshape(len(kept), len(signals.time)),
+        tuple(bands[row] for row in kept),
+        length,
     )
 
 
@@ -218,7 +222,8 @@ def _bands(row: Row, mask: np.ndarray, length: int, step: float) -> tuple[Band, 
     from scipy.fft import next_fast_len
 
     span = length * step
-    edges = [0.0, *(e for e in EDGES if e < 0.8 * row.cutoff), row.cutoff]
+    inner = () if row.residual_name in OF_SENSORS else EDGES
+    edges = [0.0, *(e for e in inner if e < 0.8 * row.cutoff), row.cutoff]
     total = np.concatenate([[0], np.cumsum(mask)])
     bands = []
     for index, (low, high) in enumerate(itertools.pairwise(edges)):

@@ -23,8 +23,12 @@ RESIDUALS = {
     "transmission": ("motor", "rad/s"),
     "base": ("robot", "N, Nm"),
     "ground": ("foot", "N"),
+    "gyro": ("sensor", "rad/s"),
+    "accelerometer": ("sensor", "m/s^2"),
 }
 """Kind of place and unit of the rows of each of `Signals.residual`."""
+OF_SENSORS = tuple(name for name, (kind, _) in RESIDUALS.items() if kind == "sensor")
+"""Residuals of the IMU, which no torque enters."""
 OF_MOTORS = tuple(
     residual_name for residual_name, (kind, _) in RESIDUALS.items() if kind == "motor"
 )
@@ -41,11 +45,19 @@ def row_names(subject: Subject, residual_name: str) -> tuple[str, ...]:
         residual_name: of `RESIDUALS`.
 
     Returns:
-        Joints, motors, parts of the base's wrench, or each foot with each axis.
+        Joints, motors, parts of the base's wrench, each foot with each axis, or the axes of a
+        sensor.
     """
     feet = tuple(f"{foot}_{axis}" for foot in subject.feet for axis in "xyz")
     kind, _ = RESIDUALS[residual_name]
-    return {"joint": subject.joints, "motor": subject.motors, "robot": WRENCH, "foot": feet}[kind]
+    sensor = tuple(f"{residual_name}_{axis}" for axis in "xyz")
+    return {
+        "joint": subject.joints,
+        "motor": subject.motors,
+        "robot": WRENCH,
+        "foot": feet,
+        "sensor": sensor,
+    }[kind]
 
 
 def row_units(subject: Subject, residual_name: str) -> tuple[str, ...]:
@@ -80,7 +92,11 @@ class Signals:
             [N, Nm];
         transmission: logged speed of the motors minus that of the joints' motion `(t, m)` [rad/s],
             where both are known;
-        ground: logged contact force minus the nominal ground's at the logged motion `(t, 3 f)` [N].
+        ground: logged contact force minus the nominal ground's at the logged motion `(t, 3 f)` [N];
+        gyro: angular velocity that the IMU of a floating base measured minus the rate of the logged
+            orientation, in the sensor's axes `(t, 3)` [rad/s];
+        accelerometer: what the IMU felt minus the acceleration of the logged velocity and
+            orientation, and gravity, in the sensor's axes `(t, 3)` [m/s^2].
     """
 
     log: Log

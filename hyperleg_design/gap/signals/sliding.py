@@ -56,7 +56,8 @@ def sliding(signals: Signals) -> np.ndarray:
 @memoized
 def dry_friction(signals: Signals) -> np.ndarray:
     """Dry friction of each joint: the model's; where it has none, what the residual shows, if the
-    way of sliding explains most of it beside a rotor that the model lacks.
+    way of sliding explains most of it beside functions of posture and acceleration, so that a load
+    or a rotor that the model lacks does not hide it.
 
     Args:
         signals: conditioned log.
@@ -64,17 +65,20 @@ def dry_friction(signals: Signals) -> np.ndarray:
     Returns:
         [Nm], `(n,)`.
     """
-    residual = signals.residual["motion"]
-    known = signals.valid[:, None] & np.isfinite(residual)
-    columns = sliding(signals), residual, signals.acceleration
-    way, left, fast = (np.where(known, np.nan_to_num(column), 0.0) for column in columns)
-    square = np.maximum(np.sum(fast**2, 0), 1e-300)
-    way, left = (each - fast * np.sum(fast * each, 0) / square for each in (way, left))
-    along, ways, whole = (np.sum(x, 0) for x in (way * left, way**2, left**2))
-    shown = np.divide(along, ways, out=np.zeros_like(along), where=ways > 0)
-    shown[along**2 < MOST * ways * whole] = 0.0
-    coulomb = signals.subject.coulomb
-    return np.asarray(np.where(coulomb > 0, coulomb, np.maximum(shown, 0.0)))
+    angles = np.nan_to_num(signals.position)
+    posture = np.concatenate([np.ones((len(angles), 1)), np.sin(angles), np.cos(angles)], 1)
+    friction = signals.subject.coulomb.copy()
+    for joint in np.flatnonzero(friction == 0).tolist():
+        residual = signals.residual["motion"][:, joint]
+        known = signals.valid & np.isfinite(residual)
+        own = signals.acceleration[:, joint], signals.rigid[:, joint]
+        beside = np.nan_to_num(np.concatenate([posture, np.stack(own, 1)], 1)[known])
+        both = np.stack([sliding(signals)[known, joint], residual[known]], 1)
+        both -= beside @ np.linalg.lstsq(beside, both, rcond=None)[0]
+        (ways, along), (_, whole) = both.T @ both
+        if ways > 0 and along > 0 and along**2 >= MOST * ways * whole:
+            friction[joint] = along / ways
+    return friction
 
 
 def presliding(signals: Signals) -> np.ndarray:

@@ -6,10 +6,9 @@ from dataclasses import replace
 import pytest
 from diagnosed import run
 
-from hyperleg_design.gap.inference.detectors.imu_offset import PLACE, Offset
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
 from hyperleg_design.gap.inference.rules import PosteriorRules
-from hyperleg_design.gap.pipeline.detected_causes import of_feet, of_imu
+from hyperleg_design.gap.pipeline.detected_causes import of_feet
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.results.diagnosis import Named, Place, Value
 from hyperleg_design.report.gap.text import diagnosis_text
@@ -27,78 +26,8 @@ def none(robot_files):
     return found
 
 
-@pytest.fixture
-def offset():
-    errors = {
-        f"{kind}_{axis}": Value(0.05 * (axis == "y"), 0.0, 0.1, "")
-        for kind in ("gyro", "accelerometer")
-        for axis in "xyz"
-    }
-    return Offset(errors, "gyro", 0.05, 0.001)
-
-
-def certain(told):
-    return sum(c.probability for c in (*told.causes, *told.rivals))
-
-
 def names(causes):
     return [(c.effect, c.location) for c in causes]
-
-
-def test_a_sensor_is_the_cause_where_nothing_else_is(none, offset):
-    told = of_imu(none, offset, CERTAIN)
-    assert told.verdict == "explained"
-    assert names(told.causes) == [PLACE]
-    assert (told.gap.before, told.gap.after, told.gap.unit) == (0.05, 0.001, "rad/s")
-    assert told.gap.closed == pytest.approx(0.98)
-    assert told.where[0].location == "imu"
-    assert all(rival.closed == 0 for rival in told.rivals)
-    assert "base_orientation by a constant: 0, 0.05, 0 rad/s" in diagnosis_text(told.mapping())
-    assert certain(told) < 1 + 1e-9
-
-
-def test_a_sensor_is_one_cause_more_beside_others_and_is_not_named_twice(none, offset):
-    told = of_imu(replace(none, verdict="explained", causes=(OTHER,)), offset, CERTAIN)
-    assert names(told.causes) == [("coulomb_friction", "hip"), PLACE]
-    assert of_imu(told, offset, CERTAIN) is told
-
-
-def test_a_sensor_that_is_named_already_has_the_surer_of_both_sizes(none, offset):
-    rough = {name: Value(0.0, -0.1, 0.1, "") for name in offset.parameters}
-    sure = {**rough, "gyro_x": Value(0.01, 0.009, 0.011, "")}
-    blind = replace(offset, parameters={**offset.parameters, "gyro_z": Value(0.0, 0.0, 0.0, "")})
-    told = (
-        of_imu(
-            replace(none, verdict="explained", causes=(Named(*PLACE, 0.9, 0.8, sure),)),
-            blind,
-            CERTAIN,
-        )
-        .causes[0]
-        .parameters
-    )
-    assert told["gyro_y"] == offset.parameters["gyro_y"]  # other sensors know it better
-    assert told["gyro_x"] == sure["gyro_x"]  # residuals do
-    assert told["gyro_z"] == rough["gyro_z"]  # no other sensor tells it
-
-
-def test_a_sensor_does_not_explain_a_gap_that_is_unknown(none, offset):
-    told = of_imu(replace(none, verdict="unknown"), offset, CERTAIN)
-    assert (told.verdict, told.causes) == ("unknown", ())
-    assert names(told.rivals)[0] == PLACE
-    assert told.residual_shape[0]["shape"] == "offset"
-    assert diagnosis_text(told.mapping()).count("base_orientation by a constant") == 1
-    assert certain(told) < 1 + 1e-9
-
-
-def test_a_vertical_that_leans_is_an_unknown_gap_and_no_cause(none, offset):
-    leaning = replace(offset, kind="accelerometer", leans=0.03)
-    told = of_imu(none, leaning, CERTAIN)
-    assert (told.verdict, told.causes) == ("unknown", ())
-    assert names(told.rivals)[0] == PLACE
-    assert "leans by 0.03 rad" in diagnosis_text(told.mapping())
-    assert names(
-        of_imu(replace(none, verdict="explained", causes=(OTHER,)), leaning, CERTAIN).causes
-    ) == [("coulomb_friction", "hip")]
 
 
 def feet(effect, shape, says, unit):

@@ -37,9 +37,9 @@ USUAL = np.repeat([GYRO, ACCELEROMETER], 3)
 class ImuBias(Effect):
     """Constant errors of gyro and accelerometer, in the sensor's axes.
 
-    The motion of a floating base is known from them, so that the joint torques which it needs are
-    off; a base whose motion comes from elsewhere does not feel it. In simulation the policy is told
-    a wrong angular velocity and a tilted gravity.
+    They differ from a logged orientation and velocity by it. The motion of a floating base is
+    known from them, so that the joint torques which it needs are off, too. In simulation the policy
+    is told a wrong angular velocity and a tilted gravity.
     """
 
     identifier: ClassVar[str] = "imu_bias"
@@ -70,33 +70,15 @@ class ImuBias(Effect):
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        subject, base = signals.subject, signals.base
-        values = np.atleast_2d(np.asarray(values, float))
-        if base is None:
-            return {}
-        by_gyro, by_accelerometer = (
-            np.isfinite(signals.log.vector(kind)).any(0).all() for kind in ("gyro", "accelerometer")
-        )
-        motion = signals.position, signals.velocity, signals.acceleration
-        arm = subject.imu_position
+        values = np.atleast_2d(np.asarray(values, float))[:, None]
+        ticks = (1, len(signals.time), 1)
+        return misread(signals, np.tile(values[..., :3], ticks), np.tile(values[..., 3:], ticks))
 
-        def centripetal(spin: np.ndarray) -> np.ndarray:
-            return np.cross(spin, np.cross(spin, arm))
-
-        needed = rigid.inverse_dynamics(subject, *motion, base)
-        wrench = rigid.base_wrench(subject, *motion, base) if "base" in signals.residual else None
-        rows, base_rows = np.zeros((len(values), *needed.shape)), []
-        for row, bias in enumerate(values):
-            spin = base.angular_velocity - (subject.imu_rotation @ bias[:3] if by_gyro else 0.0)
-            force = base.specific_force
-            if by_accelerometer:
-                force = force - subject.imu_rotation @ bias[3:]
-                force = force + centripetal(base.angular_velocity) - centripetal(spin)
-            true = dataclasses.replace(base, angular_velocity=spin, specific_force=force)
-            rows[row] = rigid.inverse_dynamics(subject, *motion, true) - needed
-            if wrench is not None:
-                base_rows.append(rigid.base_wrench(subject, *motion, true) - wrench)
-        return {"motion": rows} | ({"base": np.stack(base_rows)} if base_rows else {})
+    @override
+    def starts(self, signals: Signals, location: str) -> np.ndarray:
+        """Each error alone, of both signs."""
+        usual = np.diag(self.usual(location, signals.subject))
+        return np.concatenate([usual, -usual])
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
@@ -121,3 +103,45 @@ class BiasedImu(Alteration):
     """In the base's axes [rad/s], `(3,)` or `(n, 3)`."""
     accelerometer: Any
     """In the base's axes [m/s^2], `(3,)` or `(n, 3)`."""
+
+
+def misread(signals: Signals, gyro: np.ndarray, accelerometer: np.ndarray) -> dict[str, np.ndarray]:
+    """Compute what errors of an IMU leave in the residuals: of the sensors themselves, and of the
+    torques that the motion needs which they tell.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        gyro: errors of the gyro, in the sensor's axes `(k, t, 3)` [rad/s].
+        accelerometer: errors of the accelerometer, in the sensor's axes `(k, t, 3)` [m/s^2].
+
+    Returns:
+        Traces by name of the residual `(k, t, rows)`; none without a floating base.
+    """
+    subject, base = signals.subject, signals.base
+    if base is None:
+        return {}
+    by_gyro, by_accelerometer = (
+        np.isfinite(signals.log.vector(kind)).any(0).all() for kind in ("gyro", "accelerometer")
+    )
+    motion = signals.position, signals.velocity, signals.acceleration
+    arm = subject.imu_position
+
+    def centripetal(spin: np.ndarray) -> np.ndarray:
+        return np.cross(spin, np.cross(spin, arm))
+
+    needed = rigid.inverse_dynamics(subject, *motion, base)
+    wrench = rigid.base_wrench(subject, *motion, base) if "base" in signals.residual else None
+    rows, base_rows = [], []
+    for turning, felt in zip(gyro, accelerometer, strict=True):
+        spin, force = base.angular_velocity, base.specific_force
+        if by_gyro:
+            spin = spin - turning @ subject.imu_rotation.T
+        if by_accelerometer:
+            force = force - felt @ subject.imu_rotation.T
+            force = force + centripetal(base.angular_velocity) - centripetal(spin)
+        true = dataclasses.replace(base, angular_velocity=spin, specific_force=force)
+        rows.append(rigid.inverse_dynamics(subject, *motion, true) - needed)
+        if wrench is not None:
+            base_rows.append(rigid.base_wrench(subject, *motion, true) - wrench)
+    traces = {"motion": np.stack(rows), "gyro": gyro, "accelerometer": accelerometer}
+    return traces | ({"base": np.stack(base_rows)} if base_rows else {})

@@ -1,4 +1,4 @@
-"""A base that is not level, or gravity that is declared wrongly."""
+"""A base that is not level, gravity that is declared wrongly, or an orientation that is off."""
 
 from __future__ import annotations
 
@@ -27,17 +27,19 @@ PARALLEL = 1e-6
 
 
 class LeaningVertical(Effect):
-    """Gravity acts on a robot with a fixed base in another direction than declared: by `east` and
-    `north` along two directions across it.
+    """Gravity acts in another direction than declared: by `east` and `north` along two directions
+    across it.
 
-    Trace: the torque that the robot at rest needs against the part of gravity that is across the
-    declared one. The catalogue does not have it, as its cause is none of the robot.
+    Trace: of a fixed base, the torque that the robot at rest needs against the part of gravity that
+    is across the declared one; of a floating one, what the accelerometer feels of that part more
+    than the logged orientation says. The catalogue does not have it, as its cause is none of the
+    robot.
     """
 
     identifier: ClassVar[str] = "leaning_vertical"
     kind: ClassVar[str] = "robot"
     listed: ClassVar[bool] = False
-    summary: ClassVar[str] = "a fixed base is not level, or its gravity is declared wrongly"
+    summary: ClassVar[str] = "a base is not level, or gravity or its orientation are off"
     rare: ClassVar[float] = -3.0
     """Assumed: stands are levelled, while zeros of encoders slip."""
     linear: ClassVar[bool] = True
@@ -48,12 +50,14 @@ class LeaningVertical(Effect):
 
     @override
     def locations(self, subject: Subject) -> tuple[str, ...]:
-        """The robot, if its base is fixed. Where all axes are parallel a vertical that leans is
-        the same as another zero of the first joint.
+        """The robot, if there is gravity. Where all axes of a fixed base are parallel, a vertical
+        that leans is the same as another zero of the first joint.
         """
         tree = subject.tree
-        if tree.floating or not subject.gravity.any():
+        if not subject.gravity.any():
             return ()
+        if tree.floating:
+            return (ROBOT,)
         frames: list[np.ndarray] = []
         for parent, rotation in zip(tree.parent, tree.rotation, strict=True):
             frames.append((frames[parent] if parent >= 0 else np.eye(3)) @ rotation)
@@ -66,9 +70,15 @@ class LeaningVertical(Effect):
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        across = _across(signals.subject.gravity)
+        if signals.subject.floating:
+            assert signals.base is not None
+            turned = signals.base.rotation @ signals.subject.imu_rotation
+            felt = -np.einsum("tji,kj->kti", turned, across)
+            return {"accelerometer": np.tensordot(np.atleast_2d(values), felt, 1)}
         rest = np.zeros_like(signals.position)
         motion = signals.position, rest, rest
-        leaning = (replace(signals.subject, gravity=g) for g in _across(signals.subject.gravity))
+        leaning = (replace(signals.subject, gravity=g) for g in across)
         needed = np.stack([inverse_dynamics(s, *motion, rotors=False) for s in leaning])
         return {"motion": np.tensordot(np.atleast_2d(values), needed, 1)}
 
@@ -86,7 +96,7 @@ class LeaningVertical(Effect):
     def describe(self, values: np.ndarray) -> str:
         return (
             f"feels a vertical that leans by {float(np.hypot(*values)):.2g} rad against the "
-            f"declared gravity: its base is not level, or gravity is declared wrongly"
+            f"declared gravity: its base is not level, or gravity or its orientation are off"
         )
 
 

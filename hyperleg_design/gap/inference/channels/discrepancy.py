@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from hyperleg_design.gap.effects.unlisted.inputs import FAST, SLOW, SPEED
-from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.inertial import sensed
+from hyperleg_design.gap.signals.signals import OF_SENSORS, Signals
 from hyperleg_design.gap.signals.sliding import sliding
 
 ANGLE = 0.7
@@ -40,6 +41,9 @@ def shapes(signals: Signals, residual: str, column: int, waves: int) -> np.ndarr
         named, state = _of_joint(signals, column)
     elif residual in MOTORS and signals.command is not None:
         named, state = _of_motor(signals, column, load(signals, residual, column))
+    elif residual in OF_SENSORS:
+        varying = sensed(signals, residual)
+        return np.nan_to_num(varying - varying.mean(0)).T
     else:
         named = [np.ones(len(signals.time)), *signals.velocity.T[: NEIGHBOURS + 1]]
         return np.nan_to_num(np.array(named))
@@ -69,6 +73,9 @@ def load(signals: Signals, residual: str, column: int) -> np.ndarray:
         return asked if residual == "drive" else asked - signals.residual["control"][:, column]
     if residual == "transmission":
         return np.asarray((signals.velocity @ signals.subject.joint_from_motor)[:, column])
+    if residual in OF_SENSORS:
+        varying = sensed(signals, residual)[:, column]
+        return np.asarray(varying - varying.mean())
     return np.asarray(signals.residual[residual][:, column])
 
 

@@ -30,7 +30,7 @@ def test_it_is_the_torque_that_another_gravity_takes(robot_files):
     subject = load_subject(robot_files["arm"])
     q, v, a, _ = random_motion(subject)
     values = np.array([0.03, -0.2])
-    signals = SimpleNamespace(subject=subject, position=q)
+    signals = SimpleNamespace(subject=subject, position=q, base=None)
     (found,) = LEANING.trace(signals, "robot", values)["motion"]
     across = [LEANING.trace(signals, "robot", row)["motion"][0] for row in np.eye(2)]
     np.testing.assert_allclose(found, values[0] * across[0] + values[1] * across[1], atol=1e-12)
@@ -56,11 +56,12 @@ def test_on_parallel_axes_it_is_another_zero_of_the_first(robot_files, name, pla
     assert LEANING.locations(load_subject(robot_files[name])) == places
 
 
-def test_a_floating_base_and_a_robot_without_weight_have_none(robot_files):
+def test_a_robot_without_weight_has_none_and_one_that_floats_has(robot_files):
     subject = load_subject(robot_files["arm"])
     assert LEANING.locations(replace(subject, gravity=np.zeros(3))) == ()
-    floating = replace(subject, tree=replace(subject.tree, floating=True))
-    assert LEANING.locations(floating) == ()
+    coupled = load_subject(robot_files["coupled"])
+    floating = replace(coupled, tree=replace(coupled.tree, floating=True))
+    assert LEANING.locations(floating) == ("robot",)
 
 
 def test_it_says_the_angle_and_is_added_to_no_simulation(robot_files):
