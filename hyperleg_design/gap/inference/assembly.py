@@ -65,16 +65,19 @@ class Evidence:
             trace: that its parameter leaves, in all samples or in those under test `(S,)`.
             standing: whether it acts in all logs.
         """
-        number, at = 0.0, factor.row  # rows of the tests are the first ones
+        numbers: dict[str, tuple[float, int]] = {}  # rows of the tests are the first ones
         for channel, share, expected in zip(self.channels, self.moved, self.expected, strict=True):
             row = place_of(self.samples.rows, channel.residual, channel.column)
             assert row is not None
             place = channel.samples if standing else channel.under_test
             others = not factor.alone and channel.residual in MOTORS
             if row == factor.row or (others and np.any(trace[place] != 0)):
-                numbers = share * float(self.samples.share[place].sum())
-                numbers += expected if standing else 0.0
-                number, at = max((number, at), (numbers, row), key=lambda counted: counted[0])
+                number = share * float(self.samples.share[place].sum())
+                number += expected if standing else 0.0
+                kind = channel.residual
+                numbers[kind] = max(numbers.get(kind, (0.0, row)), (number, row))
+        _, at = max(numbers.values(), default=(0.0, factor.row))
+        number = sum(number for number, _ in numbers.values())
         return replace(factor, number=number, row=at, shows=0.0 if standing else factor.shows)
 
     def scaled(self, cause: Cause) -> Cause:
