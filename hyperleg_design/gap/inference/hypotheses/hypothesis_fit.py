@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
+from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.families import IN_DRIVES, INERTIAL
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
@@ -113,13 +114,15 @@ class HypothesisFit:
         values = np.array(proposal.values, float)
         scales = limited_scales(self.evidence, current.scales, self.rules)
         everywhere = proposal.standing or self.only is not None
-        samples = self.evidence.samples if everywhere else self.evidence.tests
+        others = _acting_beside(effect, proposal.standing, current)
+        samples = self._beside(effect, everywhere, others)
         best: tuple[float, Cause] | None = None
         for _ in range(self.rules.search.steps):
             cause = linearise(samples, effect, proposal.location, values)
             if cause is None:
                 break
             cause = self.evidence.on_all_samples(cause, proposal.standing, self.only)
+            cause = replace(cause, before=_values_of(others))
             stack = Stack.of((*current.causes, cause), self.evidence.weight)
             crossing = Crossing.of(self.evidence.channels, stack.rows)
             reached = self._reached(stack, crossing, scales, cause)
@@ -166,28 +169,23 @@ class HypothesisFit:
         """
         moved = False
         beside: dict[tuple[bool, bool, bool], Samples] = {}
-        values = [hypothesis.values(place) for place in range(len(hypothesis.causes))]
-        sized = list(zip(hypothesis.causes, values, strict=True))
-        drives = [pair for pair in sized if pair[0].standing and pair[0].effect in IN_DRIVES]
-        masses = [pair for pair in sized if pair[0].effect in INERTIAL]
         candidates, place, least = [], 0, self.rules.search.converged
         for candidate in hypothesis.candidates:
             causes = []
             for cause in candidate.causes:
-                at, place = cause.values if cause.linear else values[place], place + 1
-                others = masses if WEIGHED[cause.effect].by_load else []
-                if not cause.standing and cause.effect in IN_DRIVES:
-                    others = drives
-                wanted = tuple(float(x) for _, own in others for x in own)
+                at = cause.values if cause.linear else hypothesis.values(place)
+                place += 1
+                effect = WEIGHED[cause.effect]
+                others = _acting_beside(effect, cause.standing, hypothesis)
+                wanted = _values_of(others)
                 if are_near(at, cause.values, cause.usual, least) and are_near(
                     wanted, cause.before, 1.0, least
                 ):
                     causes.append(cause)
                     continue
-                effect = WEIGHED[cause.effect]
                 alike = cause.standing, effect.by_load, bool(others)
                 if alike not in beside:
-                    beside[alike] = self._beside(cause, others)
+                    beside[alike] = self._beside(effect, cause.standing, others)
                 again = linearise(beside[alike], effect, cause.location, at)
                 if again is not None:
                     cause, moved = self._instead(cause, again, wanted), True
@@ -195,12 +193,14 @@ class HypothesisFit:
             candidates.append(replace(candidate, causes=tuple(causes)))
         return tuple(candidates) if moved else None
 
-    def _beside(self, cause: Cause, others: Sequence[tuple[Cause, np.ndarray]]) -> Samples:
-        """Samples that show a cause, as others leave their logs."""
-        samples = self.evidence.samples if cause.standing else self.evidence.tests
+    def _beside(
+        self, effect: Effect, everywhere: bool, others: Sequence[tuple[Cause, np.ndarray]]
+    ) -> Samples:
+        """Samples that show an effect, in all logs or in those under test, as others leave them."""
+        samples = self.evidence.samples if everywhere else self.evidence.tests
         if not others:
             return samples
-        if WEIGHED[cause.effect].by_load:
+        if effect.by_load:
             return carrying(samples, others, len(self.evidence.signals))
         return after(samples, others)
 
@@ -315,6 +315,22 @@ class HypothesisFit:
                 for channel, own, rest, null in each
             )
         )
+
+
+def _acting_beside(
+    effect: Effect, standing: bool, hypothesis: Hypothesis
+) -> list[tuple[Cause, np.ndarray]]:
+    """Causes of a hypothesis that change what an effect acts on, and their values: what drives lack
+    in all logs, for one that is new in a drive, and masses, for friction under load.
+    """
+    sized = [(cause, hypothesis.values(place)) for place, cause in enumerate(hypothesis.causes)]
+    if not standing and effect.identifier in IN_DRIVES:
+        return [pair for pair in sized if pair[0].standing and pair[0].effect in IN_DRIVES]
+    return [pair for pair in sized if effect.by_load and pair[0].effect in INERTIAL]
+
+
+def _values_of(causes: Sequence[tuple[Cause, np.ndarray]]) -> tuple[float, ...]:
+    return tuple(float(value) for _, values in causes for value in values)
 
 
 def _sizes(stack: Stack, solution: Solution) -> np.ndarray:
