@@ -20,6 +20,7 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.placing import is_logged, is_measured
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.samples import Samples
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.filtering import FilteredLog
 from hyperleg_design.gap.signals.signals import Signals
 
@@ -61,37 +62,56 @@ def carrying(samples: Samples, causes: Sequence[tuple[Cause, np.ndarray]], tests
 
 
 def _after(log: FilteredLog, causes: Sequence[tuple[Cause, np.ndarray]]) -> FilteredLog:
+    """A log with what controllers ask for and what motors give as some causes leave them; limits
+    act on what is asked for at last, so that they are left out of the changes of it.
+    """
     signals = log.signals
-    command, believed, target = signals.command, signals.believed, signals.target
-    given = np.zeros_like(believed)
+    free = replace(signals, subject=_unlimited(signals.subject))
+    believed, asked = signals.believed, np.zeros_like(signals.believed)
+    measured = [is_measured(signals, motor) for motor in range(asked.shape[1])]
     for cause, values in causes:
-        left = EFFECTS[cause.effect].trace(signals, cause.location, values[None])
-        drive = np.nan_to_num(left["drive"][0]) if "drive" in left else np.zeros_like(given)
-        lost = np.zeros_like(given)
-        if "motion" in left:
-            lost = np.nan_to_num(left["motion"][0]) @ signals.subject.motor_from_joint.T
-        measured = [is_measured(signals, motor) for motor in range(given.shape[1])]
-        command = None if command is None else command + drive
+        _, lost = _given(signals, cause, values)
+        drive, unlimited = _given(free, cause, values)
         believed = believed - lost
-        given += np.where(measured, drive, -lost)
+        asked += np.where(measured, drive, -unlimited)
+    command, target = signals.command, signals.target
+    if command is not None:
+        command = command + np.where(measured, asked, 0.0)
     if target is not None:
-        target = target + _ahead(signals, given)
+        target = target + _ahead(signals, asked)
     return replace(log, signals=replace(signals, command=command, believed=believed, target=target))
 
 
-def _ahead(signals: Signals, given: np.ndarray) -> np.ndarray:
+def _unlimited(subject: Subject) -> Subject:
+    none = np.full_like(subject.torque_limit, np.inf)
+    return replace(subject, torque_limit=none, stall_torque=none, no_load_speed=none)
+
+
+def _given(signals: Signals, cause: Cause, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What a cause adds to measured motor torques, and what it takes of unmeasured ones `(t, m)`
+    each [Nm].
+    """
+    left = EFFECTS[cause.effect].trace(signals, cause.location, values[None])
+    nothing = np.zeros_like(signals.believed)
+    drive = np.nan_to_num(left["drive"][0]) if "drive" in left else nothing
+    if "motion" not in left:
+        return drive, nothing
+    return drive, np.nan_to_num(left["motion"][0]) @ signals.subject.motor_from_joint.T
+
+
+def _ahead(signals: Signals, asked: np.ndarray) -> np.ndarray:
     """Change of the targets by which controllers ask for other torques; where commands are logged,
     they ask for these anyway.
 
     Args:
         signals: a conditioned log, `t` ticks.
-        given: change of what motors give `(t, m)` [Nm].
+        asked: change of what is asked of motors `(t, m)` [Nm].
 
     Returns:
         `(t, n)` [rad]; 0 where no stiffness is known.
     """
     subject = signals.subject
-    logged = [is_logged(signals, motor) for motor in range(given.shape[1])]
-    asked = np.where(logged, 0.0, given / signals.supplied) @ subject.joint_from_motor.T
+    logged = [is_logged(signals, motor) for motor in range(asked.shape[1])]
+    torque = np.where(logged, 0.0, asked / signals.supplied) @ subject.joint_from_motor.T
     stiffness = np.where(subject.passive, 0.0, np.nan_to_num(subject.gains[:, 0]))
-    return np.divide(asked, stiffness, out=np.zeros_like(asked), where=stiffness > 0)
+    return np.divide(torque, stiffness, out=np.zeros_like(torque), where=stiffness > 0)

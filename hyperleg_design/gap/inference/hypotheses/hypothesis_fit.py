@@ -113,6 +113,8 @@ class HypothesisFit:
         low, high = effect.bounds(proposal.location, subject)
         values = np.array(proposal.values, float)
         scales = limited_scales(self.evidence, current.scales, self.rules)
+        if proposal.standing:  # what changed in the logs under test must not bend it
+            scales = current.scales
         everywhere = proposal.standing or self.only is not None
         others = _acting_beside(effect, proposal.standing, current)
         samples = self._beside(effect, everywhere, others)
