@@ -158,12 +158,28 @@ class HypothesisFit:
         Args:
             hypothesis: fitted to causes that are linearised elsewhere.
         """
+        limited = self._at_limited_scales(hypothesis)
         for _ in range(self.rules.search.steps):
-            candidates = self._relinearised_once(hypothesis)
+            candidates = self._relinearised_once(limited)
             if candidates is None:
                 break
-            hypothesis = self.fit(candidates, hypothesis.scales)
-        return hypothesis
+            limited = self._at_limited_scales(replace(hypothesis, candidates=candidates))
+        again = [hypothesis, self.fit(limited.candidates, hypothesis.scales)]
+        for place, one in enumerate(again):
+            for _ in range(self.rules.search.steps):
+                candidates = self._relinearised_once(one)
+                if candidates is None:
+                    break
+                one = again[place] = self.fit(candidates, one.scales)
+        return max(again, key=lambda one: one.score)
+
+    def _at_limited_scales(self, hypothesis: Hypothesis) -> Hypothesis:
+        """Sizes of a hypothesis at limited scales, at which nothing hides what causes explain."""
+        scales = limited_scales(self.evidence, hypothesis.scales, self.rules, True)
+        stack = Stack.of(hypothesis.causes, self.evidence.weight)
+        crossing = Crossing.of(self.evidence.channels, stack.rows)
+        solution = self.at_scales(stack, crossing, scales)
+        return replace(hypothesis, theta=solution.theta, covariance=solution.covariance)
 
     def _relinearised_once(self, hypothesis: Hypothesis) -> tuple[Candidate, ...] | None:
         """Candidates linearised at their estimates, on what others leave; None where they are
@@ -254,9 +270,10 @@ class HypothesisFit:
         stack = Stack.of(causes, self.evidence.weight)
         crossing = Crossing.of(channels, stack.rows)
         beginnings = [self._first_round(stack, crossing, scales)]
-        limited = limited_scales(self.evidence, scales, self.rules)
+        lacking = any(cause.standing for cause in causes)
+        limited = limited_scales(self.evidence, scales, self.rules, lacking)
         if any(
-            len(rows) and np.any(low.noise < own.noise)
+            len(rows) and (np.any(low.noise < own.noise) or low.standing < own.standing)
             for low, own, rows in zip(limited, scales, crossing.shown, strict=True)
         ):
             beginnings.append(self._first_round(stack, crossing, limited))
@@ -356,7 +373,7 @@ def are_near(values: ArrayLike, others: ArrayLike, usual: ArrayLike, least: floa
 
 
 def limited_scales(
-    evidence: Evidence, scales: Sequence[Scales], rules: InferenceRules
+    evidence: Evidence, scales: Sequence[Scales], rules: InferenceRules, lacking: bool = False
 ) -> tuple[Scales, ...]:
     """Limit the scales under test, so that a search for causes finds what noise and discrepancy
     would explain otherwise.
@@ -374,10 +391,11 @@ def limited_scales(
     """
     prior, most = rules.discrepancy, rules.search.scales
     change, alone = np.log(most * prior.change), np.log(most * prior.standing)
+    taught = np.log(most * prior.referenced) if lacking else np.inf
     limited = []
     for channel, own in zip(evidence.channels, scales, strict=True):
         noise, place = own.noise.copy(), channel.bands_tested
         noise[place] = np.minimum(noise[place], most * channel.usual_noise(own.noise, rules))
-        standing = own.standing if channel.referenced else min(own.standing, alone)
-        limited.append(Scales(noise, standing, min(own.change, change), 0.0))
+        standing = min(own.standing, taught if channel.referenced else alone)
+        limited.append(Scales(noise, float(standing), min(own.change, change), 0.0))
     return tuple(limited)
