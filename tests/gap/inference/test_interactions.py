@@ -5,10 +5,14 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.inference.assembly import evidence_of
 from hyperleg_design.gap.inference.interactions import after, carrying
 from hyperleg_design.gap.inference.linearisation import linearise
+from hyperleg_design.gap.inference.rules import InferenceRules
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.signals.loading import load_subject
 
 MOTOR = "m_back"
 
@@ -73,3 +77,50 @@ def test_gears_rub_by_all_that_they_carry(robot_files, standing):
         here = standing or place == 0
         assert not np.allclose(loaded.rigid, plain.rigid, atol=0.1)
         np.testing.assert_allclose(signals.rigid, (loaded if here else plain).rigid, atol=1e-6)
+
+
+SERVO = """<mujoco><worldbody><body name="arm"><joint name="hinge" axis="0 1 0" armature="0.01"/>
+  <inertial pos="0 0 -0.1" mass="0.3" diaginertia="0.001 0.001 0.0001"/></body></worldbody>
+  <actuator><position name="hinge" joint="hinge" kp="12" kv="0.5" forcerange="-1.5 1.5"/></actuator>
+</mujoco>"""
+
+
+@pytest.mark.parametrize("measured", [True, False])
+def test_a_softer_controller_multiplies_the_error_of_late_targets_and_limits_act_last(
+    tmp_path, measured
+):
+    """Against the torque of such a controller, written out."""
+    (tmp_path / "servo.xml").write_text(SERVO)
+    time = np.arange(0, 10, 0.005)
+    position = 0.8 * np.sin(2 * time) + 0.3 * np.sin(5 * time)
+    speed = 1.6 * np.cos(2 * time) + 1.5 * np.cos(5 * time)
+    target = position + 0.16 * speed
+    signals = {"position/hinge": position, "position_target/hinge": target}
+    if measured:
+        signals["motor_torque/hinge"] = np.zeros_like(time)
+    log = Log("servo", time, signals, Metadata(targets="moving"))
+    samples = evidence_of(
+        [condition(log, load_subject(tmp_path / "servo.xml"))], [], InferenceRules()
+    ).tests
+    late, softer = np.array([0.015, 1.0]), np.array([0.7, 0.9])
+    delay = EFFECTS["command_delay"]
+    lacking = [(linearise(samples, delay, "robot", late), late)]
+    (log_after,) = after(samples, lacking).filtered_logs
+
+    def given(stiffness, damping, delayed):
+        old = np.interp(time - delayed, time, target)
+        asked = 12 * stiffness * (old - position) - 0.5 * damping * speed
+        return np.clip(asked, -1.5, 1.5)
+
+    residual = "drive" if measured else "motion"
+    own = samples.filtered_logs[0].signals
+    first = delay.trace(own, "robot", late[None])[residual][0, :, 0]
+    gain = EFFECTS["controller_gain"]
+    second = gain.trace(log_after.signals, "hinge", softer[None])[residual][0, :, 0]
+    change = given(0.7, 0.9, 0.015) - given(1.0, 1.0, 0.0)
+    inside = slice(20, -20)
+    found = (first + second) if measured else -(first + second)
+    assert np.abs(change).max() > 0.8
+    np.testing.assert_allclose(found[inside], change[inside], atol=0.02)
+    alone = gain.trace(own, "hinge", softer[None])[residual][0, :, 0]
+    assert np.abs(first + alone - (first + second)).max() > 0.1
