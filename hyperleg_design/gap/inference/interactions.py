@@ -76,7 +76,7 @@ def _after(log: FilteredLog, causes: Sequence[tuple[Cause, np.ndarray]]) -> Filt
         asked += np.where(measured, drive, -unlimited)
     command, target = signals.command, signals.target
     if command is not None:
-        command = command + np.where(measured, asked, 0.0)
+        command = command + asked
     if target is not None:
         target = target + _ahead(signals, asked)
     return replace(log, signals=replace(signals, command=command, believed=believed, target=target))
