@@ -89,6 +89,9 @@ class Effect(ABC):
     inertial: ClassVar[bool] = False
     """Whether it is of masses or rotors. Its usual errors are the same in all sessions, as these do
     not change overnight, and its trace counts as far as drives feel accelerations."""
+    built: ClassVar[bool] = False
+    """Whether it is a matter of how a joint is built, of its belt, gear or rotor, which is the same
+    in all sessions: references do not differ from one another by it."""
     nuisance_rank: ClassVar[int] = 0
     """Order of its nuisance parameters among those of other effects at the same place; sums over
     them keep it, so that answers are the same to the last digit."""

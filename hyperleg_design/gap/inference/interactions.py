@@ -17,12 +17,45 @@ from dataclasses import replace
 import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.effect import Effect
+from hyperleg_design.gap.effects.families import IN_DRIVES, INERTIAL
 from hyperleg_design.gap.effects.placing import is_logged, is_measured
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.filtering import FilteredLog
 from hyperleg_design.gap.signals.signals import Signals
+
+
+def acting_on(
+    effect: Effect, standing: bool, causes: Sequence[tuple[Cause, np.ndarray]]
+) -> list[tuple[Cause, np.ndarray]]:
+    """Choose the causes that change what an effect acts on: what drives lack in all logs, for one
+    that is new in a drive, and masses, for friction under load.
+
+    Args:
+        effect: the effect.
+        standing: whether it acts in all logs.
+        causes: of a hypothesis, and their values `(k,)` each.
+
+    Returns:
+        Those of them.
+    """
+    if not standing and effect.identifier in IN_DRIVES:
+        return [pair for pair in causes if pair[0].standing and pair[0].effect in IN_DRIVES]
+    return [pair for pair in causes if effect.by_load and pair[0].effect in INERTIAL]
+
+
+def values_of(causes: Sequence[tuple[Cause, np.ndarray]]) -> tuple[float, ...]:
+    """List all values of some causes.
+
+    Args:
+        causes: and their values `(k,)` each.
+
+    Returns:
+        The values, one cause after the other.
+    """
+    return tuple(float(value) for _, values in causes for value in values)
 
 
 def after(samples: Samples, causes: Sequence[tuple[Cause, np.ndarray]]) -> Samples:

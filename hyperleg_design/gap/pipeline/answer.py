@@ -13,13 +13,18 @@ from scipy.special import expit
 from hyperleg_design import provenance
 from hyperleg_design.gap.checks.check import Check
 from hyperleg_design.gap.checks.coverage import beyond_references
-from hyperleg_design.gap.effects import UNLISTED
+from hyperleg_design.gap.effects import EFFECTS, UNLISTED
 from hyperleg_design.gap.effects.sensors.imu_bias import IMU
 from hyperleg_design.gap.effects.strength import has_placeholders
 from hyperleg_design.gap.experiments import experiment
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.gap_size import GapSize
-from hyperleg_design.gap.inference.hypotheses.hypothesis import Candidate, Hypothesis
+from hyperleg_design.gap.inference.hypotheses.hypothesis import (
+    EVERYWHERE,
+    Candidate,
+    Hypothesis,
+    Name,
+)
 from hyperleg_design.gap.inference.hypotheses.reference_differences import Difference
 from hyperleg_design.gap.inference.hypotheses.search import Result
 from hyperleg_design.gap.inference.intervals import intervals
@@ -81,7 +86,7 @@ class Answer:
                 share = (1 - self.rules.posterior.likely) / most
                 rivals = tuple(_scaled(rival, share) for rival in rivals)
         equivalent = tuple(
-            tuple(name[:2] for name in (posterior.hypothesis.candidates[place].name, *group))
+            tuple(_placed(name) for name in (posterior.hypothesis.candidates[place].name, *group))
             for place, group in zip(posterior.order, posterior.alike, strict=True)
             if group and naming
         )
@@ -291,6 +296,7 @@ class Answer:
             for cause, description in self.unexplained.unlisted_causes
             if cause.standing
         )
+        texts += self.ends()
         if has_placeholders(self.evidence.signals[0].subject):
             texts.append(
                 "effort limits are far beyond what the joints need and count as unknown: give the "
@@ -303,6 +309,24 @@ class Answer:
             )
         return tuple(dict.fromkeys(texts))
 
+    def ends(self) -> list[str]:
+        """Sizes of causes that are at an end of the range that is tried, in words."""
+        texts = []
+        hypothesis = self.posterior.hypothesis
+        for place, cause in enumerate(hypothesis.causes):
+            if cause.effect in UNLISTED:
+                continue
+            values, parameters = hypothesis.values(place), EFFECTS[cause.effect].parameters
+            at_end = np.isclose(values, cause.low) | np.isclose(values, cause.high)
+            for i in np.flatnonzero(at_end & ~cause.shape & ~np.isclose(values, cause.nulls)):
+                lacking = " in all logs" if cause.standing else ""
+                texts.append(
+                    f"{cause.effect} at {cause.location}{lacking}: {parameters[i].name} "
+                    f"{values[i]:.3g} is at the end of the range that is tried, so something else "
+                    f"may act there"
+                )
+        return texts
+
     def provenance(self) -> dict[str, Any]:
         """What made it, of which logs."""
         return {
@@ -314,6 +338,12 @@ class Answer:
             "commit": provenance.git_commit(),
             "versions": provenance.versions(("hyperleg-design", "numpy", "scipy")),
         }
+
+
+def _placed(name: Name) -> tuple[str, str]:
+    """Effect and location of a candidate, in words where it acts at all of its places."""
+    effect, location, _ = name
+    return effect, "all its places" if location == EVERYWHERE else location
 
 
 def _scaled(rival: Named, share: float) -> Named:

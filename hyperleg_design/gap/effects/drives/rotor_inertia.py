@@ -48,6 +48,7 @@ class RotorInertia(MotorTorque):
     nuisance_rank: ClassVar[int] = 1
     described: ClassVar[bool] = True
     summary: ClassVar[str] = "a rotor (and its gear) has more or less inertia than the model"
+    built: ClassVar[bool] = True
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("inertia", "kg m^2", 0.0, -1e3, 1e3, 0.05, SOURCE),
     )

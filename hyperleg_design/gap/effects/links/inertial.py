@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import mujoco
 
 
-LARGEST_LOSS = 0.95
+LARGEST_LOSS = 0.99
 """Share of a link's own mass that may be missing at most."""
 OF_CARRIED, REACH = 0.2, 0.05
 """Share of what moves with a link that is added to it in a linear fit, and how far from the link's

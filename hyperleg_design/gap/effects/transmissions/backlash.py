@@ -37,6 +37,7 @@ class Backlash(MotorEffect):
     rough: ClassVar[Mapping[str, float]] = {"angle": 0.15}
     """How rotors move on belts that give was 10 to 25 % off in development."""
     summary: ClassVar[str] = "a motor turns freely through a small angle before its joint follows"
+    built: ClassVar[bool] = True
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter(
             "angle", "rad", 0.0, 0.0, 0.1, 0.006, "0.1-1 deg at the joint (engineering estimate)"

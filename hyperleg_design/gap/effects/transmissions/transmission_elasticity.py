@@ -49,6 +49,7 @@ class TransmissionElasticity(MotorEffect):
     rough: ClassVar[Mapping[str, float]] = {"compliance": 0.15}
     """How rotors move on belts that give was 10 to 25 % off in development."""
     summary: ClassVar[str] = "a belt, cable or gear gives under load, so motor and joint move apart"
+    built: ClassVar[bool] = True
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("compliance", "rad/Nm", 0.0, 0.0, 1e4, 0.01, COMPLIANCE_SOURCE),
         Parameter(

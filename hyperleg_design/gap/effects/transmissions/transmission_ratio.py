@@ -53,6 +53,7 @@ class TransmissionRatio(MotorEffect):
     rare: ClassVar[float] = -0.5
     """Assumed: belts have the ratio of their teeth."""
     summary: ClassVar[str] = "a transmission's ratio differs from the model's"
+    built: ClassVar[bool] = True
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("scale", "", 1.0, 0.7, 1.4, 0.03, SCALE_SOURCE),
         Parameter("side", "", 0.0, 0.0, 1.0, 1.0, "a choice", shape=True, choices=SIDES),

@@ -90,6 +90,11 @@ class Hypothesis:
         ends = np.cumsum([0, *(len(c.nulls) for c in self.causes)]).tolist()
         return [slice(start, stop) for start, stop in pairwise(ends)]
 
+    @property
+    def sized(self) -> list[tuple[Cause, np.ndarray]]:
+        """Its causes, and their values `(k,)` each."""
+        return [(cause, self.values(place)) for place, cause in enumerate(self.causes)]
+
     def values(self, place: int) -> np.ndarray:
         """Look up the values of one cause's parameters.
 

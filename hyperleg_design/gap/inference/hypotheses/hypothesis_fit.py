@@ -11,7 +11,6 @@ import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.families import IN_DRIVES, INERTIAL
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.crossing import Crossing
@@ -30,7 +29,7 @@ from hyperleg_design.gap.inference.hypotheses.hypothesis import (
     solve,
 )
 from hyperleg_design.gap.inference.hypotheses.proposals import Proposal
-from hyperleg_design.gap.inference.interactions import after, carrying
+from hyperleg_design.gap.inference.interactions import acting_on, after, carrying, values_of
 from hyperleg_design.gap.inference.linearisation import linearise
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import Samples
@@ -116,7 +115,7 @@ class HypothesisFit:
         if proposal.standing:  # what changed in the logs under test must not bend it
             scales = current.scales
         everywhere = proposal.standing or self.only is not None
-        others = _acting_beside(effect, proposal.standing, current)
+        others = acting_on(effect, proposal.standing, current.sized)
         samples = self._beside(effect, everywhere, others)
         best: tuple[float, Cause] | None = None
         for _ in range(self.rules.search.steps):
@@ -124,7 +123,7 @@ class HypothesisFit:
             if cause is None:
                 break
             cause = self.evidence.on_all_samples(cause, proposal.standing, self.only)
-            cause = replace(cause, before=_values_of(others))
+            cause = replace(cause, before=values_of(others))
             stack = Stack.of((*current.causes, cause), self.evidence.weight)
             crossing = Crossing.of(self.evidence.channels, stack.rows)
             reached = self._reached(stack, crossing, scales, cause)
@@ -194,8 +193,8 @@ class HypothesisFit:
                 at = cause.values if cause.linear else hypothesis.values(place)
                 place += 1
                 effect = WEIGHED[cause.effect]
-                others = _acting_beside(effect, cause.standing, hypothesis)
-                wanted = _values_of(others)
+                others = acting_on(effect, cause.standing, hypothesis.sized)
+                wanted = values_of(others)
                 if are_near(at, cause.values, cause.usual, least) and are_near(
                     wanted, cause.before, 1.0, least
                 ):
@@ -334,22 +333,6 @@ class HypothesisFit:
                 for channel, own, rest, null in each
             )
         )
-
-
-def _acting_beside(
-    effect: Effect, standing: bool, hypothesis: Hypothesis
-) -> list[tuple[Cause, np.ndarray]]:
-    """Causes of a hypothesis that change what an effect acts on, and their values: what drives lack
-    in all logs, for one that is new in a drive, and masses, for friction under load.
-    """
-    sized = [(cause, hypothesis.values(place)) for place, cause in enumerate(hypothesis.causes)]
-    if not standing and effect.identifier in IN_DRIVES:
-        return [pair for pair in sized if pair[0].standing and pair[0].effect in IN_DRIVES]
-    return [pair for pair in sized if effect.by_load and pair[0].effect in INERTIAL]
-
-
-def _values_of(causes: Sequence[tuple[Cause, np.ndarray]]) -> tuple[float, ...]:
-    return tuple(float(value) for _, values in causes for value in values)
 
 
 def _sizes(stack: Stack, solution: Solution) -> np.ndarray:

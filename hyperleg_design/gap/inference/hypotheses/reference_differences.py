@@ -137,7 +137,7 @@ def _traces_in(search: Search, only: np.ndarray) -> dict[Name, Traces]:
     traces: dict[Name, Traces] = {}
     for (effect, location, standing), traced in search.traces.items():
         weighed = WEIGHED[effect]
-        if not standing or weighed.flexible:
+        if not standing or weighed.flexible or weighed.built:
             continue
         own: Traces
         if isinstance(traced, list):
