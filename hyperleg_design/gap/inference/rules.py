@@ -134,6 +134,8 @@ class SearchRules:
     """Gain in nats from which any is [nat] (assumed)."""
     groups: int = 2
     """Effects that are tried at all of their places at once in one step [-]."""
+    pairs: int = 2
+    """Rivals at the place of a cause beside which a second one is tried there [-]."""
     rounds: int = 12
     """Most rounds of fitting causes and scales in turn [-]."""
     scales: float = 2.0

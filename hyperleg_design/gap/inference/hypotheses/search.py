@@ -123,12 +123,20 @@ class Search:
 
     def _with_rivals_at_each_place(self, current: Hypothesis) -> Hypothesis:
         """Fit the other effects at the place of each cause under test in its stead, the other
-        causes as they are, so that rivals at one place are compared on the same footing.
+        causes as they are, so that rivals at one place are compared on the same footing; and beside
+        the likeliest of them a second one there, as friction of two kinds may gain only together.
         """
         best = current
         for removed, rest in zip(current.candidates, self._each_removed(current), strict=True):
-            if not removed.standing and removed.location != EVERYWHERE:
-                best = self._improved(self.extended(rest, at=removed.location), best)
+            if removed.standing or removed.location == EVERYWHERE:
+                continue
+            rivals = self.extended(rest, at=removed.location)
+            best = self._improved(rivals, best)
+            others = [rival for rival in rivals if removed.name not in rival.names]
+            others.sort(key=lambda rival: (-rival.score, rival.names))
+            for rival in others[: self.rules.search.pairs]:
+                pairs = self.extended(rival, at=removed.location, flexible=False)
+                best = self._improved(pairs, best)
         return best
 
     def _without_unlisted(self, current: Hypothesis) -> Hypothesis:
