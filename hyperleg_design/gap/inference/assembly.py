@@ -53,8 +53,9 @@ class Evidence:
     """Independent numbers that the expected noise of each channel's references counts for."""
 
     def with_numbers(self, factor: Factor, trace: np.ndarray, standing: bool) -> Factor:
-        """What scaling torques costs, as far as they are no noise in the channels that are made of
-        them; once, as these channels are made of the same torques, where most of them are.
+        """Compute what scaling torques costs, as far as they are no noise in the channels that are
+        made of them: once in each equation that holds them, in the channel where most of them are.
+        A measured torque is compared with what the motion needs, and with what was asked for.
 
         Where they are scaled in all logs, friction and rotors may be, too, and all that is left to
         gain is noise nearer to the expected one: that counts for nothing, by larger torques or by

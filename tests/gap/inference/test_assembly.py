@@ -77,3 +77,6 @@ def test_a_reading_that_is_off_pays_in_the_residual_of_its_drive_whatever_else_s
     assert [row.residual_name for row in rows] == ["drive", "motion"]
     assert subject.motors[rows[0].column] == "m_front"
     assert len(joined([(i, one.factors[0]) for i, one in enumerate(causes.values())])) == 2
+    # a ratio scales the torque at the joint, a reading also what is compared with commands
+    reading, ratio = (one.factors[0].number for one in causes.values())
+    assert reading > 1.5 * ratio > 0

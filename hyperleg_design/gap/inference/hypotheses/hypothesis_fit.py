@@ -152,25 +152,30 @@ class HypothesisFit:
 
     def relinearised(self, hypothesis: Hypothesis) -> Hypothesis:
         """Linearise the causes of a hypothesis again at their estimates, and beside the causes that
-        change what they act on (`interactions`), until both agree.
+        change what they act on (`interactions`), until both agree: from the estimates as they are,
+        and from those at limited scales.
 
         Args:
             hypothesis: fitted to causes that are linearised elsewhere.
         """
-        limited = self._at_limited_scales(hypothesis)
+        begun, limited = [hypothesis], self._at_limited_scales(hypothesis)
         for _ in range(self.rules.search.steps):
             candidates = self._relinearised_once(limited)
             if candidates is None:
                 break
             limited = self._at_limited_scales(replace(hypothesis, candidates=candidates))
-        again = [hypothesis, self.fit(limited.candidates, hypothesis.scales)]
-        for place, one in enumerate(again):
-            for _ in range(self.rules.search.steps):
-                candidates = self._relinearised_once(one)
-                if candidates is None:
-                    break
-                one = again[place] = self.fit(candidates, one.scales)
-        return max(again, key=lambda one: one.score)
+        if limited.candidates is not hypothesis.candidates:
+            begun.append(self.fit(limited.candidates, hypothesis.scales))
+        return max((self._agreed(one) for one in begun), key=lambda one: one.score)
+
+    def _agreed(self, hypothesis: Hypothesis) -> Hypothesis:
+        """A hypothesis that is fitted to causes linearised at their estimates."""
+        for _ in range(self.rules.search.steps):
+            candidates = self._relinearised_once(hypothesis)
+            if candidates is None:
+                break
+            hypothesis = self.fit(candidates, hypothesis.scales)
+        return hypothesis
 
     def _at_limited_scales(self, hypothesis: Hypothesis) -> Hypothesis:
         """Sizes of a hypothesis at limited scales, at which nothing hides what causes explain."""
@@ -368,6 +373,8 @@ def limited_scales(
         evidence: channels.
         scales: fitted hyperparameters by channel.
         rules: of the inference.
+        lacking: whether a cause acts in all logs, so that the discrepancy that references taught
+            stands for it, too.
 
     Returns:
         The limited scales by channel.

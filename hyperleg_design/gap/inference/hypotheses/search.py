@@ -122,20 +122,24 @@ class Search:
         return current
 
     def _with_rivals_at_each_place(self, current: Hypothesis) -> Hypothesis:
-        """Fit the other effects at the place of each cause under test in its stead, the other
-        causes as they are, so that rivals at one place are compared on the same footing; and beside
-        the likeliest of them a second one there, as friction of two kinds may gain only together.
+        """Fit the other effects at the place of causes under test in their stead, the others as
+        they are, so that rivals at one place are compared on the same footing; and beside the
+        likeliest of them a second one there, as friction of two kinds may gain only together.
         """
         best = current
-        for removed, rest in zip(current.candidates, self._each_removed(current), strict=True):
-            if removed.standing or removed.location == EVERYWHERE:
-                continue
-            rivals = self.extended(rest, at=removed.location)
+        places = [c.location for c in current.candidates if not c.standing]
+        for place in dict.fromkeys(place for place in places if place != EVERYWHERE):
+            there = [c for c in current.candidates if c.location == place and not c.standing]
+            kept = tuple(c for c in current.candidates if c not in there)
+            rest = self._known(kept) or self.fits.fit(kept, current.scales)
+            self.fitted[rest.names] = rest
+            rivals = self.extended(rest, at=place)
             best = self._improved(rivals, best)
-            others = [rival for rival in rivals if removed.name not in rival.names]
+            taken = {c.name for c in there} if len(there) == 1 else set()
+            others = [rival for rival in rivals if not taken.intersection(rival.names)]
             others.sort(key=lambda rival: (-rival.score, rival.names))
             for rival in others[: self.rules.search.pairs]:
-                pairs = self.extended(rival, at=removed.location, flexible=False)
+                pairs = self.extended(rival, at=place, flexible=False)
                 best = self._improved(pairs, best)
         return best
 
