@@ -28,6 +28,7 @@ def test_each_residual_has_a_row_for_each_of_its_places(geared, standing):
             "motor": len(subject.motors),
             "robot": 6,
             "foot": 3 * len(subject.feet),
+            "sensor": 3,
         }
         for name, values in signals.residual.items():
             kind, _ = RESIDUALS[name]

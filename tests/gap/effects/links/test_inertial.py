@@ -178,8 +178,8 @@ def test_a_load_out_of_its_links_reach_is_rather_none(arm):
 
 
 def test_bounds_leave_something_of_a_link(arm):
-    assert effect("link_mass").bounds("forearm", arm.subject)[0, 0] == pytest.approx(-0.95 * 2.3)
-    assert effect("payload").bounds("forearm", arm.subject)[0, 0] == pytest.approx(-0.95 * 2.3)
+    assert effect("link_mass").bounds("forearm", arm.subject)[0, 0] == pytest.approx(-0.99 * 2.3)
+    assert effect("payload").bounds("forearm", arm.subject)[0, 0] == pytest.approx(-0.99 * 2.3)
     assert effect("payload").bounds("flange", arm.subject)[0, 0] == 0.0
 
 
