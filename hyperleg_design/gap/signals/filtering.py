@@ -190,12 +190,12 @@ def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> Filtere
             masks.append(mask)
     length = next_fast_len(len(signals.time), real=True)
     bands = [_bands(row, mask, length, signals.step) for row, mask in zip(rows, masks, strict=True)]
-    kept = [row for row, own in enumerate(bands) if any(len(band.used) for band in own)]
+    shown = [row for row, own in enumerate(bands) if any(len(band.used) for band in own)]
     return FilteredLog(
         signals,
-        tuple(rows[row] for row in kept),
-        np.array([masks[row] for row in kept]).reshape(len(kept), len(signals.time)),
-        tuple(bands[row] for row in kept),
+        tuple(rows[row] for row in shown),
+        np.array([masks[row] for row in shown]).reshape(len(shown), len(signals.time)),
+        tuple(bands[row] for row in shown),
         length,
     )
 

@@ -166,7 +166,8 @@ class HypothesisFit:
             limited = self._at_limited_scales(replace(hypothesis, candidates=candidates))
         if limited.candidates is not hypothesis.candidates:
             begun.append(self.fit(limited.candidates, hypothesis.scales))
-        return max((self._agreed(one) for one in begun), key=lambda one: one.score)
+        agreed = (self._agreed(beginning) for beginning in begun)
+        return max(agreed, key=lambda hypothesis: hypothesis.score)
 
     def _agreed(self, hypothesis: Hypothesis) -> Hypothesis:
         """A hypothesis that is fitted to causes linearised at their estimates."""

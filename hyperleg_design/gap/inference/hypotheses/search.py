@@ -130,15 +130,15 @@ class Search:
         places = [c.location for c in current.candidates if not c.standing]
         for place in dict.fromkeys(place for place in places if place != EVERYWHERE):
             there = [c for c in current.candidates if c.location == place and not c.standing]
-            kept = tuple(c for c in current.candidates if c not in there)
-            rest = self._known(kept) or self.fits.fit(kept, current.scales)
+            others = tuple(c for c in current.candidates if c not in there)
+            rest = self._known(others) or self.fits.fit(others, current.scales)
             self.fitted[rest.names] = rest
             rivals = self.extended(rest, at=place)
             best = self._improved(rivals, best)
             taken = {c.name for c in there} if len(there) == 1 else set()
-            others = [rival for rival in rivals if not taken.intersection(rival.names)]
-            others.sort(key=lambda rival: (-rival.score, rival.names))
-            for rival in others[: self.rules.search.pairs]:
+            likely = [rival for rival in rivals if not taken.intersection(rival.names)]
+            likely.sort(key=lambda rival: (-rival.score, rival.names))
+            for rival in likely[: self.rules.search.pairs]:
                 pairs = self.extended(rival, at=place, flexible=False)
                 best = self._improved(pairs, best)
         return best
