@@ -20,7 +20,7 @@ class Validate(Printing):
     out: Path = Path("results/validation")
     """Folder of the results, one a checkout."""
     suites: tuple[str, ...] = ("real", "newcomers", "blind")
-    """Suites of the benchmark to run: real, newcomers, blind."""
+    """Suites of the benchmark to run: real, drawn, newcomers, blind."""
     splits: tuple[str, ...] = ("development", "held out")
     """Splits to run. Development cases may be looked at while a diagnosis is being improved, and
     held-out cases may not."""
