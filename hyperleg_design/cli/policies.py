@@ -1,4 +1,4 @@
-"""Verbs on policies: train, campaign, evaluate, paper; no logic of their own."""
+"""Verbs on policies: train, campaign, evaluate, robustness, paper; no logic of their own."""
 
 from __future__ import annotations
 
