@@ -1,4 +1,6 @@
-"""Verbs on designs: list, build, check, analyze, compare, sweep, study; no logic of their own."""
+"""Verbs on designs: list, build, check, import, analyze, compare, sweep, study, version; no logic
+of their own.
+"""
 
 from __future__ import annotations
 

@@ -266,8 +266,8 @@ class Excite(Printing):
 
 @dataclass(frozen=True, kw_only=True)
 class Blind(Printing):
-    """Make a trial with sealed truth in a process of its own, and diagnose its cases; goes on where
-    it was stopped.
+    """Make a trial with sealed truth in a process of its own, and diagnose its cases; the same
+    command continues a trial that was stopped.
     """
 
     cases: Annotated[int, AtLeast(1)] = 240

@@ -31,7 +31,7 @@ class View(Printing):
     policy: str = ""
     """ONNX file or name of a shipped training; one trial of it is simulated and played."""
     seed: Annotated[int | None, AtLeast(0)] = None
-    """Of the policy's starting state; the protocol's by default."""
+    """Seed of the policy's starting state; the protocol's by default."""
     host: str = "localhost"
     """Address to listen on; 0.0.0.0 lets other machines in."""
     port: Annotated[int, AtLeast(1)] = 8080
@@ -106,11 +106,11 @@ class Video(Printing):
     protocol: str = ""
     """walk, t_test, or a YAML file; what suits the policy's task by default."""
     seed: Annotated[int | None, AtLeast(0)] = None
-    """Of the policy's starting state; the protocol's by default."""
+    """Seed of the policy's starting state; the protocol's by default."""
     begin: Annotated[float, AtLeast(0)] = 0.0
     """First time shown [s], or as much earlier as the walk is too short for begin and duration."""
     duration: Annotated[float, AtLeast(0, exclusive=True)] = 10.0
-    """Shown of a walk [s]; a T-test is shown whole."""
+    """Length of the part of a walk that is shown [s]; a T-test is shown whole."""
     size: tuple[int, int] = (800, 640)
     """Width and height [px]."""
     fps: Annotated[float, AtLeast(1)] = 25.0

@@ -1,4 +1,4 @@
-"""Verbs on policies: train, campaign, evaluate, paper; no logic of their own."""
+"""Verbs on policies: train, campaign, evaluate, robustness, paper; no logic of their own."""
 
 from __future__ import annotations
 
@@ -274,8 +274,8 @@ class Evaluate(Printing):
 
 @dataclass(frozen=True, kw_only=True)
 class Robustness(Printing):
-    """Curves of what policies bear: pushes, slopes, floor friction, payload, errors of friction and
-    torque constants, uneven floors, and speeds.
+    """Evaluate policies under changed conditions and draw curves over them: pushes, slopes, floor
+    friction, payload, errors of friction and torque constants, uneven floors, and speeds.
     """
 
     policies: Annotated[tuple[str, ...], tyro.conf.Positional]
@@ -284,7 +284,7 @@ class Robustness(Printing):
     """speed, push, slope, floor_friction, payload, joint_friction, torque_constant, uneven_floor;
     all that there are for the task by default."""
     trials: Annotated[int, AtLeast(1)] = 10
-    """At each level."""
+    """Number of trials at each level of a condition."""
     out: Path
     """Folder to write: robustness.png, trials.parquet and curves.json."""
     workers: Annotated[int, AtLeast(1)] = 2

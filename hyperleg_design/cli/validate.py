@@ -13,8 +13,8 @@ from hyperleg_design.errors import InputError
 
 @dataclass(frozen=True, kw_only=True)
 class Validate(Printing):
-    """Run the frozen benchmark of the diagnosis: real logs, newcomers' robots, blind plants; goes
-    on where it was stopped.
+    """Run the frozen benchmark of the diagnosis: real logs, faults drawn by a seed, simulated
+    robots by other authors, blind plants; the same command continues a run that was stopped.
     """
 
     out: Path = Path("results/validation")

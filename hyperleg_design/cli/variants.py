@@ -27,11 +27,12 @@ class Variants(Printing):
     """Folder to write tables to, and each held-out design (0/design.yaml and so on)."""
     finetune: Annotated[int, AtLeast(0)] = 0
     """Policy steps by which the first policy is trained on each held-out design, to be compared
-    with it as well; none by default. Needs the learning extra. Killed, it goes on."""
+    with it as well; none by default. Needs the learning extra. The same command continues a
+    run that was killed."""
     workers: Annotated[int, AtLeast(1)] = 2
     """Number of those trainings that run side by side."""
     threads: Annotated[int, AtLeast(1)] = 1
-    """Of the simulation."""
+    """Number of threads of the simulation."""
 
     def run(self) -> None:
         """Evaluate, write and print."""

@@ -1,4 +1,4 @@
-"""The machine that a subject is to its drives."""
+"""The joints and motors of a subject, as the actuation model of the simulation needs them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results that are kept while what they are of lives."""
+"""Results of a function, kept for as long as the object that they were computed from exists."""
 
 from __future__ import annotations
 

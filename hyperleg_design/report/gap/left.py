@@ -1,5 +1,5 @@
-"""What is left of a gap, in the plainest words that fit: constant and viscous friction before any
-other shape.
+"""The part of a gap that no named cause explains, described by the simplest law that fits: constant
+and viscous friction before any other shape.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a check of a file finding."""
+"""One thing that a check of a file finds, and the lines that report several."""
 
 from __future__ import annotations
 

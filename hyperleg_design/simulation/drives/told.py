@@ -1,5 +1,5 @@
-"""What drives, encoders and an IMU tell of a simulation with alterations, where that is not the
-truth.
+"""Signals that drives, encoders and an IMU report in a simulation with alterations, where they
+differ from the true state.
 """
 
 from __future__ import annotations

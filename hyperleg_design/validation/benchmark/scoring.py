@@ -35,7 +35,7 @@ from hyperleg_design.validation.benchmark.adapter import FAILED
 from hyperleg_design.validation.benchmark.case import Fault, Truth
 
 VERSION = 5
-"""Of the cases and of these rules together; 2 and 3 add cases and change none."""
+"""Of the cases and of these rules together; 2 to 5 add cases and change none."""
 NAMING = ("explained", "ambiguous")
 """Verdicts by which causes are named."""
 CONFIDENT = 0.9
