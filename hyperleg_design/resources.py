@@ -17,6 +17,8 @@ from hyperleg_design.errors import InputError, meant
 CONTENT = ("descriptions", "motors", "sweeps", "sim")
 NOUNS = {"descriptions": "design", "motors": "motor", "sweeps": "sweep", "sim": "sim"}
 """What a file of each content folder is, for errors."""
+POLICIES = "policies"
+"""Folder of the shipped policies in `sim/`."""
 
 
 def home() -> Path:
@@ -149,6 +151,15 @@ def sim_names(what: str) -> list[str]:
         The names, without kind and ending.
     """
     return [n.removeprefix(f"{what}_") for n in names("sim") if n.startswith(f"{what}_")]
+
+
+def shipped_folder() -> Path:
+    """Find the folder of the shipped policies.
+
+    Returns:
+        Its path, which need not exist.
+    """
+    return content_folder("sim") / POLICIES
 
 
 def find_sim(what: str, name: str | os.PathLike[str]) -> Path:

@@ -26,13 +26,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hyperleg_design import resources
 from hyperleg_design.errors import InputError, meant
 from hyperleg_design.evaluation.half_precision import halve_weights
+from hyperleg_design.resources import shipped_folder
 from hyperleg_design.writing import output_folder, write_bytes, write_text
 
-POLICIES = "policies"
-"""Folder of the shipped policies in `sim/`."""
 POLICY, CRITIC, LATE = "policy.onnx", "critic.onnx", "late_*.onnx"
 RUN, PROGRESS = "run.json", "progress.jsonl"
 CURVE_ROWS = 200
@@ -88,15 +86,6 @@ class Packed:
     """ONNX files; 0 where the training is not finished and was left out."""
     size: int
     """Size of the folder [byte]."""
-
-
-def shipped_folder() -> Path:
-    """Find the folder of the shipped policies.
-
-    Returns:
-        Its path, which need not exist.
-    """
-    return resources.content_folder("sim") / POLICIES
 
 
 def shipped_policies(folder: str | Path | None = None, *, late: bool = True) -> list[Shipped]:

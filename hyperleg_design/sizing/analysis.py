@@ -28,7 +28,7 @@ SCHEMA = 1
 """Version of the object that `analyze` returns."""
 
 BELOW_HIP = slice(3, None)
-"""Joints that share motors: knee, ankle pitch, ankle roll and, where it moves, the toe."""
+"""Joints and motors that share torque: knee, ankle pitch, ankle roll and toe, where it moves."""
 
 
 def analyze(design: RobotDesign) -> dict[str, Any]:

@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from hyperleg_design import resources
 from hyperleg_design.learning.campaigns.campaign import Campaign, Run
 from hyperleg_design.learning.preset_file import load_preset
 from hyperleg_design.learning.records.status import CHECKPOINT, POLICY, RUN, read_status
 from hyperleg_design.learning.resolved import preset_mapping, task_mapping
+from hyperleg_design.resources import shipped_folder
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.tasks import load_task
 
@@ -21,8 +21,6 @@ STATES = ("done", "shipped", "unneeded", "running", "stopped", "missing")
 FINISHED = ("done", "shipped", "unneeded")
 """States in which nothing is left to train; a shipped policy stands in `sim/policies/` with the
 training's name, and an unneeded one is only the start of others, which are all finished."""
-POLICIES = "policies"
-"""Folder of the shipped policies in `sim/`."""
 
 
 @dataclass(frozen=True)
@@ -99,15 +97,6 @@ def status_table(statuses: list[RunStatus]) -> str:
         f"{done} of {len(statuses)} done; {steps / 1e6:.1f} of {total / 1e6:.1f} M policy steps"
     )
     return "\n".join(lines)
-
-
-def shipped_folder() -> Path:
-    """Find the folder in which finished trainings are shipped.
-
-    Returns:
-        Its path, which need not exist.
-    """
-    return resources.content_folder("sim") / POLICIES
 
 
 def _is_shipped(run: Run) -> bool:

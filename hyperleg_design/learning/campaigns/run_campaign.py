@@ -13,11 +13,11 @@ from hyperleg_design.learning.campaigns.campaign import Campaign, Run
 from hyperleg_design.learning.campaigns.campaign_status import (
     FINISHED,
     campaign_status,
-    shipped_folder,
     status_table,
 )
 from hyperleg_design.learning.records.status import POLICY
 from hyperleg_design.processes import run_side_by_side
+from hyperleg_design.resources import shipped_folder
 from hyperleg_design.writing import MARKER, check_output_folder, write_text
 
 LOG = "training.log"

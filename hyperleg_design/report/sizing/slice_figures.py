@@ -15,6 +15,7 @@ from hyperleg_design.report.style import GREY, INK, VARIANT_COLOUR, figure_style
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.sizing import slices, zonotope
+from hyperleg_design.sizing.analysis import BELOW_HIP
 from hyperleg_design.sizing.envelope import motor_envelope
 
 if TYPE_CHECKING:
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 KNEE, ANKLE_PITCH, ANKLE_ROLL, TOE = range(4)
 """Rows of the joints below the hip."""
 _SPEED_SHADES = ("#6aaed6", "#2b7bba", "#08306b")
-BELOW_HIP = slice(3, None)
-"""Joints and motors that share torque; row 0 of their matrix is the knee."""
 _LABEL = {KNEE: "knee", ANKLE_PITCH: "ankle pitch", ANKLE_ROLL: "ankle roll", TOE: "toe"}
 PAIRS = ((KNEE, ANKLE_PITCH), (TOE, ANKLE_PITCH), (ANKLE_ROLL, ANKLE_PITCH))
 """Joints of the 2-D cuts, horizontal and vertical."""

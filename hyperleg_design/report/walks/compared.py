@@ -8,7 +8,6 @@ from pathlib import Path
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.shipped import (
     Shipped,
-    shipped_folder,
     shipped_policies,
     trainings_text,
 )
@@ -18,6 +17,7 @@ from hyperleg_design.learning.campaigns.campaign import (
     shipped_campaigns,
     shipped_starts,
 )
+from hyperleg_design.resources import shipped_folder
 
 CAMPAIGNS = ("campaign", "campaign_t_test")
 """Campaigns whose arms the analysis plan compares; the others ask other questions."""

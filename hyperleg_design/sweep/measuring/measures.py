@@ -16,7 +16,7 @@ from hyperleg_design.robot.checks import consistency
 from hyperleg_design.robot.kinematics import dimensions
 from hyperleg_design.robot.laws.friction import joint_friction
 from hyperleg_design.robot.models import leg_reflected_inertia
-from hyperleg_design.robot.names import JOINTS
+from hyperleg_design.robot.names import JOINTS, SEGMENTS
 from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.robot.trees import limb_masses, tree_limb
 from hyperleg_design.robot.trees.tree_design import TreeDesign
@@ -25,8 +25,6 @@ from hyperleg_design.sizing.envelope import MotorEnvelope
 from hyperleg_design.sweep.measuring.batch import Batch
 from hyperleg_design.sweep.measuring.measure import BOTH, HYPERLEG, MEASURES, TREE, Measure, measure
 from hyperleg_design.sweep.measuring.reference_loads import StaticLoad
-
-SEGMENTS = ("pelvis", "thigh", "shank", "foot", "toe")
 
 PUSH_OFF_DIRECTION = {"knee": -1.0, "ankle_pitch": 1.0}
 """Joint speeds of `push_off_power` over each other: knee extension and plantar flexion alike, the
