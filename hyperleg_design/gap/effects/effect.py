@@ -21,8 +21,6 @@ from hyperleg_design.simulation.alteration import Alteration
 
 KINDS = ("joint", "motor", "link", "foot", "sensor", "robot")
 """Where an effect can sit."""
-RESIDUALS = ("motion", "drive", "control", "base", "ground", "gyro", "accelerometer")
-"""Residuals in which a trace can stand; `Signals` says what each compares."""
 LOGGED, NEEDED, STEERED = NUISANCE_TORQUES = ("logged", "needed", "steered")
 """Torques that a trace of a nuisance parameter rests on: the log's; those that the motion needs; or
 the log's with targets by which controllers ask for those, where nobody measured torques."""

@@ -13,7 +13,7 @@ In the order in which a diagnosis passes them:
 | ... beside other causes that change what it acts on? | `interactions` |
 | what keeps a cause from scaling noise away? | `endogenous` (torques), `shrinking` (belts), `smoothing` (slow drives) |
 | how probable is a set of causes before any log? | `hypotheses/cause_prior` |
-| how large are the causes of a set, and what is its evidence? | `hypothesis`, `hypothesis_fit`, `bounded_least_squares` there |
+| how large are the causes of a set, and what is its evidence? | `hypothesis`, `hypothesis_fit`, `bounded_least_squares`, `limited_scales` there |
 | which sets are tried? | `proposals` (what is worth a fit), `search` there |
 | which reference log differs from the others? | `hypotheses/reference_differences` |
 | how large is the gap, and how much of it closes on data that were left out? | `cross_validation`, `gap_size` |
@@ -21,7 +21,7 @@ In the order in which a diagnosis passes them:
 | which verdict, with which probabilities? | `posterior` |
 | with which intervals? | `intervals` |
 | how small a fault would these logs have shown? | `detectable` |
-| what do the IMU and the feet show that no residual holds? | `detectors/` |
+| what do the feet show that no residual holds? | `detectors/` |
 
 `rules` has the priors and thresholds; what one computation needs alone stands at the top of its module.
 """  # noqa: E501

@@ -6,8 +6,9 @@ from pendulum import Wrong, low_passed
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import EFFECTS, effect
-from hyperleg_design.gap.effects.effect import KINDS, NUISANCE_TORQUES, RESIDUALS
+from hyperleg_design.gap.effects.effect import KINDS, NUISANCE_TORQUES
 from hyperleg_design.gap.signals.loading import load_subject
+from hyperleg_design.gap.signals.signals import RESIDUALS
 
 FIXED = [name for name, one in EFFECTS.items() if one.kind not in ("foot", "sensor")]
 EVERYTHING = ("motor_torque", "motor_torque_command", "temperature", "voltage")

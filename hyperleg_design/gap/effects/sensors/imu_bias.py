@@ -30,8 +30,6 @@ _ACCELEROMETER = (
 )
 GYRO, ACCELEROMETER = 0.003, 0.05
 """Usual biases [rad/s], [m/s^2]."""
-USUAL = np.repeat([GYRO, ACCELEROMETER], 3)
-"""Of all parameters `(6,)`: standard deviations of a calibrated sensor from session to session."""
 
 
 class ImuBias(Effect):

@@ -42,8 +42,7 @@ def shapes(signals: Signals, residual: str, column: int, waves: int) -> np.ndarr
     elif residual in MOTORS and signals.command is not None:
         named, state = _of_motor(signals, column, load(signals, residual, column))
     elif residual in OF_SENSORS:
-        varying = sensed(signals, residual)
-        return np.nan_to_num(varying - varying.mean(0)).T
+        return np.nan_to_num(_varying(signals, residual)).T
     else:
         named = [np.ones(len(signals.time)), *signals.velocity.T[: NEIGHBOURS + 1]]
         return np.nan_to_num(np.array(named))
@@ -74,9 +73,14 @@ def load(signals: Signals, residual: str, column: int) -> np.ndarray:
     if residual == "transmission":
         return np.asarray((signals.velocity @ signals.subject.joint_from_motor)[:, column])
     if residual in OF_SENSORS:
-        varying = sensed(signals, residual)[:, column]
-        return np.asarray(varying - varying.mean())
+        return _varying(signals, residual)[:, column]
     return np.asarray(signals.residual[residual][:, column])
+
+
+def _varying(signals: Signals, sensor: str) -> np.ndarray:
+    """What a sensor of the IMU feels beyond its mean `(t, 3)`."""
+    felt = sensed(signals, sensor)
+    return np.asarray(felt - felt.mean(0))
 
 
 def _of_joint(signals: Signals, joint: int) -> tuple[list[np.ndarray], np.ndarray]:

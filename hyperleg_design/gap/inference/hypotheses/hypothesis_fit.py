@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from hyperleg_design.gap.inference.hypotheses.hypothesis import (
     shifted,
     solve,
 )
+from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
 from hyperleg_design.gap.inference.hypotheses.proposals import Proposal
 from hyperleg_design.gap.inference.interactions import acting_on, after, carrying, values_of
 from hyperleg_design.gap.inference.linearisation import linearise
@@ -73,6 +74,8 @@ class HypothesisFit:
     ) -> None:
         self.evidence, self.rules, self.threads = evidence, rules, threads
         self.traces, self.count, self.only = traces, count, only
+        self._left: dict[tuple[bool, bool], tuple[Any, Samples]] = {}
+        """Samples of `_beside` by what shows in them, and the causes that leave them so."""
 
     @cached_property
     def null(self) -> Hypothesis:
@@ -111,9 +114,9 @@ class HypothesisFit:
         subject = self.evidence.signals[0].subject
         low, high = effect.bounds(proposal.location, subject)
         values = np.array(proposal.values, float)
-        scales = limited_scales(self.evidence, current.scales, self.rules)
-        if proposal.standing:  # what changed in the logs under test must not bend it
-            scales = current.scales
+        scales: Sequence[Scales] = current.scales  # what changed must not bend what is lacking
+        if not proposal.standing:
+            scales = limited_scales(self.evidence, current.scales, self.rules)
         everywhere = proposal.standing or self.only is not None
         others = acting_on(effect, proposal.standing, current.sized)
         samples = self._beside(effect, everywhere, others)
@@ -191,25 +194,23 @@ class HypothesisFit:
         already.
         """
         moved = False
-        beside: dict[tuple[bool, bool, bool], Samples] = {}
-        candidates, place, least = [], 0, self.rules.search.converged
+        sized, candidates, place = hypothesis.sized, [], 0
+        least = self.rules.search.converged
         for candidate in hypothesis.candidates:
             causes = []
             for cause in candidate.causes:
-                at = cause.values if cause.linear else hypothesis.values(place)
+                at = cause.values if cause.linear else sized[place][1]
                 place += 1
                 effect = WEIGHED[cause.effect]
-                others = acting_on(effect, cause.standing, hypothesis.sized)
+                others = acting_on(effect, cause.standing, sized)
                 wanted = values_of(others)
                 if are_near(at, cause.values, cause.usual, least) and are_near(
                     wanted, cause.before, 1.0, least
                 ):
                     causes.append(cause)
                     continue
-                alike = cause.standing, effect.by_load, bool(others)
-                if alike not in beside:
-                    beside[alike] = self._beside(effect, cause.standing, others)
-                again = linearise(beside[alike], effect, cause.location, at)
+                samples = self._beside(effect, cause.standing, others)
+                again = linearise(samples, effect, cause.location, at)
                 if again is not None:
                     cause, moved = self._instead(cause, again, wanted), True
                 causes.append(cause)
@@ -219,13 +220,24 @@ class HypothesisFit:
     def _beside(
         self, effect: Effect, everywhere: bool, others: Sequence[tuple[Cause, np.ndarray]]
     ) -> Samples:
-        """Samples that show an effect, in all logs or in those under test, as others leave them."""
+        """Samples that show an effect, in all logs or in those under test, as others leave them;
+        the last ones are kept, as many effects are tried beside one hypothesis.
+        """
         samples = self.evidence.samples if everywhere else self.evidence.tests
         if not others:
             return samples
-        if effect.by_load:
-            return carrying(samples, others, len(self.evidence.signals))
-        return after(samples, others)
+        kind = everywhere, effect.by_load
+        acting = tuple((cause.effect, cause.location, cause.standing) for cause, _ in others)
+        wanted = acting, values_of(others)
+        known, left = self._left.get(kind, (None, samples))
+        if known != wanted:
+            left = (
+                carrying(samples, others, len(self.evidence.signals))
+                if effect.by_load
+                else after(samples, others)
+            )
+            self._left[kind] = wanted, left
+        return left
 
     def _instead(self, cause: Cause, again: Cause, before: tuple[float, ...]) -> Cause:
         """A cause as it is linearised again; where it gains nothing by scaling torques, so does
@@ -359,34 +371,3 @@ def are_near(values: ArrayLike, others: ArrayLike, usual: ArrayLike, least: floa
     if len(first) != len(second):
         return False
     return bool(np.all(np.abs(first - second) < least * np.asarray(usual)))
-
-
-def limited_scales(
-    evidence: Evidence, scales: Sequence[Scales], rules: InferenceRules, lacking: bool = False
-) -> tuple[Scales, ...]:
-    """Limit the scales under test, so that a search for causes finds what noise and discrepancy
-    would explain otherwise.
-
-    Noise and discrepancy that were fitted without a cause stand for it and hide it. They are cut to
-    `SearchRules.scales` times those of a healthy robot.
-
-    Args:
-        evidence: channels.
-        scales: fitted hyperparameters by channel.
-        rules: of the inference.
-        lacking: whether a cause acts in all logs, so that the discrepancy that references taught
-            stands for it, too.
-
-    Returns:
-        The limited scales by channel.
-    """
-    prior, most = rules.discrepancy, rules.search.scales
-    change, alone = np.log(most * prior.change), np.log(most * prior.standing)
-    taught = np.log(most * prior.referenced) if lacking else np.inf
-    limited = []
-    for channel, own in zip(evidence.channels, scales, strict=True):
-        noise, place = own.noise.copy(), channel.bands_tested
-        noise[place] = np.minimum(noise[place], most * channel.usual_noise(own.noise, rules))
-        standing = min(own.standing, taught if channel.referenced else alone)
-        limited.append(Scales(noise, float(standing), min(own.change, change), 0.0))
-    return tuple(limited)

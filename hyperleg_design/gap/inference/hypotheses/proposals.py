@@ -170,19 +170,22 @@ class Proposer:
             self._crossings[name] = Crossing.of(self.evidence.channels, np.concatenate(weighted))
         return self._crossings[name]
 
-    def proposals(self, causes: Sequence[Cause], scales: tuple[Scales, ...]) -> list[Proposal]:
+    def proposals(
+        self, causes: Sequence[Cause], scales: tuple[Scales, ...], at: str = ""
+    ) -> list[Proposal]:
         """Gain of every effect at every place beside some causes, best first.
 
         Args:
             causes: of a hypothesis.
             scales: by channel.
+            at: the only place that is tried; all by default.
         """
         base = self._base(causes, scales)
         taken = {(c.effect, c.location, c.standing) for c in causes}
         names = [
             name
             for name, traced in self.traces.items()
-            if name not in taken and not isinstance(traced, NotJudged)
+            if name not in taken and at in ("", name[1]) and not isinstance(traced, NotJudged)
         ]
         by_name = spread(lambda name: self._of(name, base), names, self.threads)
         proposals = [proposal for some in by_name for proposal in some]

@@ -18,7 +18,8 @@ from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.effect_traces import Starts, Traces
 from hyperleg_design.gap.inference.hypotheses.hypothesis import Hypothesis, Name
-from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit, limited_scales
+from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit
+from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
 from hyperleg_design.gap.inference.hypotheses.proposals import Proposer
 from hyperleg_design.gap.inference.hypotheses.search import Result, Search
 from hyperleg_design.gap.inference.linearisation import SHOWN, reach

@@ -24,11 +24,8 @@ from hyperleg_design.gap.inference.hypotheses.hypothesis import (
     Name,
     Stack,
 )
-from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import (
-    HypothesisFit,
-    are_near,
-    limited_scales,
-)
+from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit, are_near
+from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
 from hyperleg_design.gap.inference.hypotheses.proposals import Proposal, Proposer
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.threads import spread
@@ -131,9 +128,7 @@ class Search:
         for place in dict.fromkeys(place for place in places if place != EVERYWHERE):
             there = [c for c in current.candidates if c.location == place and not c.standing]
             others = tuple(c for c in current.candidates if c not in there)
-            rest = self._known(others) or self.fits.fit(others, current.scales)
-            self.fitted[rest.names] = rest
-            rivals = self.extended(rest, at=place)
+            rivals = self.extended(self._reduced(others, current), at=place)
             best = self._improved(rivals, best)
             taken = {c.name for c in there} if len(there) == 1 else set()
             likely = [rival for rival in rivals if not taken.intersection(rival.names)]
@@ -169,11 +164,15 @@ class Search:
 
     def _each_removed(self, current: Hypothesis) -> list[Hypothesis]:
         """The hypotheses that lack one candidate of a hypothesis each."""
-        smaller = []
-        for place in range(len(current.candidates)):
-            rest = current.candidates[:place] + current.candidates[place + 1 :]
-            smaller.append(self._known(rest) or self.fits.fit(rest, current.scales))
-            self.fitted[smaller[-1].names] = smaller[-1]
+        some = current.candidates
+        return [
+            self._reduced(some[:place] + some[place + 1 :], current) for place in range(len(some))
+        ]
+
+    def _reduced(self, candidates: tuple[Candidate, ...], current: Hypothesis) -> Hypothesis:
+        """The hypothesis of some of the candidates of another one, which is recorded."""
+        smaller = self._known(candidates) or self.fits.fit(candidates, current.scales)
+        self.fitted[smaller.names] = smaller
         return smaller
 
     def _known(self, candidates: Sequence[Candidate | Proposal]) -> Hypothesis | None:
@@ -202,7 +201,7 @@ class Search:
         rules = self.rules.search
         proposals: dict[Name, list[Proposal]] = {}
         scales = limited_scales(self.evidence, current.scales, self.rules)
-        for proposal in self.proposer.proposals(current.causes, scales):
+        for proposal in self.proposer.proposals(current.causes, scales, at):
             if self._may_grow(current, proposal.standing):
                 proposals.setdefault(proposal.name, []).append(proposal)
         names = sorted(proposals, key=lambda name: (-proposals[name][0].gain, name))
@@ -214,7 +213,7 @@ class Search:
         least = rules.least
         if instead is not None:
             least = max(least, gains.get(instead.name, least))
-        promising = [name for name in names if gains[name] > least and at in ("", name[1])]
+        promising = [name for name in names if gains[name] > least]
         unlisted = [name for name in promising if WEIGHED[name[0]].flexible]
         chosen = [name for name in promising if name not in unlisted][: rules.candidates]
         chosen += unlisted[: rules.flexible if flexible else 0]

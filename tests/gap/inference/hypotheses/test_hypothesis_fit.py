@@ -8,10 +8,8 @@ import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.hypotheses.hypothesis import Candidate
-from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import (
-    HypothesisFit,
-    limited_scales,
-)
+from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit
+from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
 from hyperleg_design.gap.inference.linearisation import linearise
 from hyperleg_design.gap.inference.rules import InferenceRules
 
@@ -94,3 +92,7 @@ def test_causes_are_looked_for_where_nothing_stands_in_for_them(fits):
         usual = channel.usual_noise(large.noise, fits.rules)
         assert (one.noise[channel.bands_tested] <= fits.rules.search.scales * usual).all()
     assert limited_scales(fits.evidence, fits.null.scales, fits.rules)[0].new == 0
+    taught = fits.rules.search.scales * fits.rules.discrepancy.referenced
+    large = tuple(replace(one, standing=9.0) for one in grown)
+    for one in limited_scales(fits.evidence, large, fits.rules, lacking=True):
+        assert np.exp(one.standing) == pytest.approx(taught)
