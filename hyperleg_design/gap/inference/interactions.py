@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,64 +21,58 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.families import IN_DRIVES, INERTIAL
 from hyperleg_design.gap.effects.placing import is_logged, is_measured
-from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.samples import Samples
 from hyperleg_design.gap.model.subject import Subject
-from hyperleg_design.gap.signals.filtering import FilteredLog
 from hyperleg_design.gap.signals.signals import Signals
 
 
-def acting_on(
-    effect: Effect, standing: bool, causes: Sequence[tuple[Cause, np.ndarray]]
-) -> list[tuple[Cause, np.ndarray]]:
+class Acting(NamedTuple):
+    """A cause with its size."""
+
+    effect: str
+    location: str
+    standing: bool
+    """Whether it acts in all logs."""
+    values: np.ndarray
+    """Of its parameters `(k,)`."""
+
+
+def acting_on(effect: Effect, standing: bool, causes: Sequence[Acting]) -> list[Acting]:
     """Choose the causes that change what an effect acts on: what drives lack in all logs, for one
     that is new in a drive, and masses, for friction under load.
 
     Args:
         effect: the effect.
         standing: whether it acts in all logs.
-        causes: of a hypothesis, and their values `(k,)` each.
+        causes: of a hypothesis.
 
     Returns:
         Those of them.
     """
     if not standing and effect.identifier in IN_DRIVES:
-        return [pair for pair in causes if pair[0].standing and pair[0].effect in IN_DRIVES]
-    return [pair for pair in causes if effect.by_load and pair[0].effect in INERTIAL]
+        return [cause for cause in causes if cause.standing and cause.effect in IN_DRIVES]
+    return [cause for cause in causes if effect.by_load and cause.effect in INERTIAL]
 
 
-def values_of(causes: Sequence[tuple[Cause, np.ndarray]]) -> tuple[float, ...]:
+def values_of(causes: Sequence[Acting]) -> tuple[float, ...]:
     """List all values of some causes.
 
     Args:
-        causes: and their values `(k,)` each.
+        causes: the causes.
 
     Returns:
         The values, one cause after the other.
     """
-    return tuple(float(value) for _, values in causes for value in values)
+    return tuple(float(value) for cause in causes for value in cause.values)
 
 
-def after(samples: Samples, causes: Sequence[tuple[Cause, np.ndarray]]) -> Samples:
-    """Replace commands and motor torques of logs by those that some causes leave.
-
-    Args:
-        samples: of logs.
-        causes: that act in drives, and their values `(k,)` each.
-
-    Returns:
-        The samples; their residuals are unchanged.
-    """
-    logs = tuple(_after(log, causes) for log in samples.filtered_logs)
-    return replace(samples, filtered_logs=logs)
-
-
-def carrying(samples: Samples, causes: Sequence[tuple[Cause, np.ndarray]], tests: int) -> Samples:
-    """Add the torques that some masses need to the needed torques of logs.
+def beside(samples: Samples, effect: Effect, causes: Sequence[Acting], tests: int) -> Samples:
+    """Replace the logs of samples by what some causes leave of them.
 
     Args:
         samples: of logs, those under test first.
-        causes: masses, and their values `(k,)` each.
+        effect: that acts on it.
+        causes: those of `acting_on`.
         tests: number of logs under test; the others contain only causes that act in all logs.
 
     Returns:
@@ -85,26 +80,45 @@ def carrying(samples: Samples, causes: Sequence[tuple[Cause, np.ndarray]], tests
     """
     logs = []
     for place, log in enumerate(samples.filtered_logs):
-        rigid = log.signals.rigid
-        for cause, values in causes:
-            if cause.standing or place < tests:
-                left = EFFECTS[cause.effect].trace(log.signals, cause.location, values[None])
-                rigid = rigid + np.nan_to_num(left["motion"][0]) if "motion" in left else rigid
-        logs.append(replace(log, signals=replace(log.signals, rigid=rigid)))
+        own = [cause for cause in causes if cause.standing or place < tests]
+        logs.append(replace(log, signals=left_by(log.signals, effect, own)))
     return replace(samples, filtered_logs=tuple(logs))
 
 
-def _after(log: FilteredLog, causes: Sequence[tuple[Cause, np.ndarray]]) -> FilteredLog:
+def left_by(signals: Signals, effect: Effect, causes: Sequence[Acting]) -> Signals:
+    """Compute what some causes leave of a log for an effect: commands, targets and torques of the
+    drives, or for friction under load the torques that masses need.
+
+    Args:
+        signals: a conditioned log.
+        effect: that acts on it.
+        causes: those of `acting_on` that act in this log.
+
+    Returns:
+        The log; its residuals are unchanged.
+    """
+    return (_carrying if effect.by_load else _after)(signals, causes)
+
+
+def _carrying(signals: Signals, causes: Sequence[Acting]) -> Signals:
+    """A log whose needed torques contain those of some masses."""
+    rigid = signals.rigid
+    for cause in causes:
+        left = _trace(signals, cause)
+        rigid = rigid + np.nan_to_num(left["motion"][0]) if "motion" in left else rigid
+    return replace(signals, rigid=rigid)
+
+
+def _after(signals: Signals, causes: Sequence[Acting]) -> Signals:
     """A log with what controllers ask for and what motors give as some causes leave them; limits
     act on what is asked for at last, so that they are left out of the changes of it.
     """
-    signals = log.signals
     free = replace(signals, subject=_unlimited(signals.subject))
     believed, asked = signals.believed, np.zeros_like(signals.believed)
     measured = [is_measured(signals, motor) for motor in range(asked.shape[1])]
-    for cause, values in causes:
-        _, lost = _given(signals, cause, values)
-        drive, unlimited = _given(free, cause, values)
+    for cause in causes:
+        _, lost = _given(signals, cause)
+        drive, unlimited = _given(free, cause)
         believed = believed - lost
         asked += np.where(measured, drive, -unlimited)
     command, target = signals.command, signals.target
@@ -112,7 +126,7 @@ def _after(log: FilteredLog, causes: Sequence[tuple[Cause, np.ndarray]]) -> Filt
         command = command + asked
     if target is not None:
         target = target + _ahead(signals, asked)
-    return replace(log, signals=replace(signals, command=command, believed=believed, target=target))
+    return replace(signals, command=command, believed=believed, target=target)
 
 
 def _unlimited(subject: Subject) -> Subject:
@@ -120,11 +134,15 @@ def _unlimited(subject: Subject) -> Subject:
     return replace(subject, torque_limit=none, stall_torque=none, no_load_speed=none)
 
 
-def _given(signals: Signals, cause: Cause, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _trace(signals: Signals, cause: Acting) -> dict[str, np.ndarray]:
+    return EFFECTS[cause.effect].trace(signals, cause.location, cause.values[None])
+
+
+def _given(signals: Signals, cause: Acting) -> tuple[np.ndarray, np.ndarray]:
     """What a cause adds to measured motor torques, and what it takes of unmeasured ones `(t, m)`
     each [Nm].
     """
-    left = EFFECTS[cause.effect].trace(signals, cause.location, values[None])
+    left = _trace(signals, cause)
     nothing = np.zeros_like(signals.believed)
     drive = np.nan_to_num(left["drive"][0]) if "drive" in left else nothing
     if "motion" not in left:

@@ -12,6 +12,7 @@ import numpy as np
 
 from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.effects.series import low_passed
+from hyperleg_design.gap.inference.interactions import Acting, acting_on, left_by
 from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.playback.sheets import root_mean_square
 from hyperleg_design.gap.signals.resting import moving_ticks, sticking
@@ -79,8 +80,9 @@ def evidence(
     Returns:
         The residual before and after, and what is explained.
     """
-    residual = signals.residual[residual_name] - _explained(signals, standing, residual_name)
-    explained = _explained(signals, causes, residual_name)
+    new, lacking = _acting(causes, False), _acting(standing, True)
+    residual = signals.residual[residual_name] - _explained(signals, lacking, new, residual_name)
+    explained = _explained(signals, new, lacking, residual_name)
     known = np.isfinite(residual) & np.isfinite(explained) & signals.valid[:, None]
     if residual_name == "motion":
         known = moving_ticks(signals, known, sticking(signals))
@@ -107,23 +109,29 @@ def evidence(
     )
 
 
+def _acting(causes: Sequence[Mapping[str, Any]], standing: bool) -> list[Acting]:
+    """Causes as `diagnosis.json` lists them, with their values; parameters without one are null."""
+    acting = []
+    for cause in causes:
+        name, given = str(cause["effect"]), cause["parameters"]
+        values = [
+            float(given[p.name]["value"]) if p.name in given else p.null
+            for p in effect(name).parameters
+        ]
+        acting.append(Acting(name, str(cause["location"]), standing, np.array(values)))
+    return acting
+
+
 def _explained(
-    signals: Signals, causes: Sequence[Mapping[str, Any]], residual_name: str
+    signals: Signals, causes: Sequence[Acting], others: Sequence[Acting], residual_name: str
 ) -> np.ndarray:
-    """Sum of the traces of causes in one residual `(t, r)`."""
+    """Sum of the traces of causes beside others in one residual `(t, r)`."""
     explained = np.zeros_like(signals.residual[residual_name])
     for cause in causes:
-        cause_effect = effect(str(cause["effect"]))
-        parameters = cause["parameters"]
-        values = np.array(
-            [
-                [
-                    float(parameters[p.name]["value"]) if p.name in parameters else p.null
-                    for p in cause_effect.parameters
-                ]
-            ]
-        )
-        trace = cause_effect.trace(signals, str(cause["location"]), values).get(residual_name)
+        own = effect(cause.effect)
+        acted_on = acting_on(own, cause.standing, [*causes, *others])
+        seen = left_by(signals, own, acted_on) if acted_on else signals
+        trace = own.trace(seen, cause.location, cause.values[None]).get(residual_name)
         if trace is not None:
             explained = explained + trace[0]
     return explained

@@ -6,8 +6,7 @@ import pytest
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.assembly import evidence_of
-from hyperleg_design.gap.inference.interactions import after, carrying
-from hyperleg_design.gap.inference.linearisation import linearise
+from hyperleg_design.gap.inference.interactions import Acting, beside
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
@@ -22,9 +21,13 @@ def tests(robot_files):
     return diagnosed.evidence(robot_files["coupled"], diagnosed.run("limited", 0)).tests
 
 
-def standing(tests, effect, *values):
-    values = np.array(values)
-    return [(linearise(tests, EFFECTS[effect], MOTOR, values), values)]
+def after(samples, causes):
+    """What causes in drives leave."""
+    return beside(samples, EFFECTS["torque_constant"], causes, len(samples.filtered_logs))
+
+
+def standing(effect, *values):
+    return [Acting(effect, MOTOR, True, np.array(values))]
 
 
 def trace(samples, effect, *values):
@@ -33,7 +36,7 @@ def trace(samples, effect, *values):
 
 
 def test_scales_of_one_motor_multiply(tests):
-    lacking = standing(tests, "torque_constant", 0.8, 0.0)
+    lacking = standing("torque_constant", 0.8, 0.0)
     added = trace(after(tests, lacking), "torque_constant", 0.75, 0.0)
     both = trace(tests, "torque_constant", 0.8, 0.0) + added
     np.testing.assert_allclose(both, trace(tests, "torque_constant", 0.6, 0.0), atol=1e-9)
@@ -41,7 +44,7 @@ def test_scales_of_one_motor_multiply(tests):
 
 def test_a_lag_after_a_lag_is_that_of_both_in_a_row(tests):
     effect = EFFECTS["actuator_bandwidth"]
-    late = after(tests, standing(tests, "actuator_bandwidth", 0.03))
+    late = after(tests, standing("actuator_bandwidth", 0.03))
     signals, lagging = (one.filtered_logs[0].signals for one in (tests, late))
     motor = signals.subject.motors.index(MOTOR)
     first = effect.trace(signals, MOTOR, np.array([[0.03]]))["drive"][0, :, motor]
@@ -51,7 +54,7 @@ def test_a_lag_after_a_lag_is_that_of_both_in_a_row(tests):
 
 
 def test_what_was_measured_stays(tests):
-    late = after(tests, standing(tests, "actuator_bandwidth", 0.03))
+    late = after(tests, standing("actuator_bandwidth", 0.03))
     np.testing.assert_array_equal(late.value, tests.value)
     assert late.filtered_logs[0].signals.residual is tests.filtered_logs[0].signals.residual
 
@@ -65,9 +68,8 @@ def test_gears_rub_by_all_that_they_carry(robot_files, standing):
         references=(diagnosed.run("healthy", 1, role="reference"),),
     )
     values = np.array([0.5, 0.0, 0.0, -0.2, 0.0])
-    cause = linearise(found.tests, EFFECTS["payload"], "shank", values)
-    cause = found.on_all_samples(cause, standing)
-    carried = carrying(found.samples, [(cause, values)], 1)
+    load = [Acting("payload", "shank", standing, values)]
+    carried = beside(found.samples, EFFECTS["load_dependent_friction"], load, 1)
     np.testing.assert_array_equal(carried.value, found.samples.value)
     load = Metadata(payload={"shank": (0.5, 0.0, 0.0, -0.2)})
     for place, log in enumerate(carried.filtered_logs):
@@ -104,7 +106,7 @@ def test_a_softer_controller_multiplies_the_error_of_late_targets_and_limits_act
     ).tests
     late, softer = np.array([0.015, 1.0]), np.array([0.7, 0.9])
     delay = EFFECTS["command_delay"]
-    lacking = [(linearise(samples, delay, "robot", late), late)]
+    lacking = [Acting("command_delay", "robot", True, late)]
     (log_after,) = after(samples, lacking).filtered_logs
 
     def given(stiffness, damping, delayed):

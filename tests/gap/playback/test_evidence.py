@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from robots import PENDULUM, servo_run, waves
 
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.playback.evidence import Evidence, evidence
 from hyperleg_design.gap.playback.sheets import root_mean_square
 from hyperleg_design.gap.signals.conditioning import condition
@@ -83,3 +85,30 @@ def test_the_row_that_is_drawn_is_the_one_that_causes_explain():
         *units,
     )
     assert (one.worst, nothing.worst) == (1, 0)
+
+
+def test_a_gain_explains_what_it_does_to_targets_that_come_late(tmp_path):
+    """A servo of 0.7 of its stiffness, whose targets come 15 ms late in its references, too."""
+    (tmp_path / "servo.xml").write_text(
+        '<mujoco><worldbody><body name="arm"><joint name="hinge" axis="0 1 0" armature="0.01"/>'
+        '<inertial pos="0 0 -0.1" mass="0.3" diaginertia="0.001 0.001 0.0001"/></body></worldbody>'
+        '<actuator><position name="hinge" joint="hinge" kp="12" kv="0.5"/></actuator></mujoco>'
+    )
+    time = np.arange(0, 10, 0.005)
+    position = 0.8 * np.sin(2 * time) + 0.3 * np.sin(5 * time)
+    speed = 1.6 * np.cos(2 * time) + 1.5 * np.cos(5 * time)
+    target = position + 0.06 * speed
+    given = 12 * 0.7 * (np.interp(time - 0.015, time, target) - position) - 0.5 * speed
+    signals = {"position/hinge": position, "position_target/hinge": target}
+    log = Log("servo", time, signals | {"motor_torque/hinge": given}, Metadata(targets="moving"))
+    conditioned = condition(log, load_subject(tmp_path / "servo.xml"))
+
+    def cause(effect, location, **values):
+        parameters = {name: {"value": value} for name, value in values.items()}
+        return {"effect": effect, "location": location, "parameters": parameters}
+
+    softer = cause("controller_gain", "hinge", stiffness_scale=0.7)
+    late = cause("command_delay", "robot", delay=0.015, late=1.0)
+    shown = evidence(conditioned, [softer], "drive", [late])
+    before, after = (np.nanstd(rows) for rows in (shown.before, shown.after))
+    assert after < 0.02 * before

@@ -18,6 +18,7 @@ from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.endogenous import Factor, joined
 from hyperleg_design.gap.inference.hypotheses.bounded_least_squares import within_bounds
+from hyperleg_design.gap.inference.interactions import Acting
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.shrinking import Shrinking
 
@@ -91,9 +92,12 @@ class Hypothesis:
         return [slice(start, stop) for start, stop in pairwise(ends)]
 
     @property
-    def sized(self) -> list[tuple[Cause, np.ndarray]]:
-        """Its causes, and their values `(k,)` each."""
-        return [(cause, self.values(place)) for place, cause in enumerate(self.causes)]
+    def acting(self) -> list[Acting]:
+        """Its causes with their sizes."""
+        return [
+            Acting(cause.effect, cause.location, cause.standing, self.values(place))
+            for place, cause in enumerate(self.causes)
+        ]
 
     def values(self, place: int) -> np.ndarray:
         """Look up the values of one cause's parameters.

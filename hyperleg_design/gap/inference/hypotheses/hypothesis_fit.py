@@ -30,7 +30,7 @@ from hyperleg_design.gap.inference.hypotheses.hypothesis import (
 )
 from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
 from hyperleg_design.gap.inference.hypotheses.proposals import Proposal
-from hyperleg_design.gap.inference.interactions import acting_on, after, carrying, values_of
+from hyperleg_design.gap.inference.interactions import Acting, acting_on, beside, values_of
 from hyperleg_design.gap.inference.linearisation import linearise
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import Samples
@@ -118,7 +118,7 @@ class HypothesisFit:
         if not proposal.standing:
             scales = limited_scales(self.evidence, current.scales, self.rules)
         everywhere = proposal.standing or self.only is not None
-        others = acting_on(effect, proposal.standing, current.sized)
+        others = acting_on(effect, proposal.standing, current.acting)
         samples = self._beside(effect, everywhere, others)
         best: tuple[float, Cause] | None = None
         for _ in range(self.rules.search.steps):
@@ -194,15 +194,15 @@ class HypothesisFit:
         already.
         """
         moved = False
-        sized, candidates, place = hypothesis.sized, [], 0
+        acting, candidates, place = hypothesis.acting, [], 0
         least = self.rules.search.converged
         for candidate in hypothesis.candidates:
             causes = []
             for cause in candidate.causes:
-                at = cause.values if cause.linear else sized[place][1]
+                at = cause.values if cause.linear else acting[place].values
                 place += 1
                 effect = WEIGHED[cause.effect]
-                others = acting_on(effect, cause.standing, sized)
+                others = acting_on(effect, cause.standing, acting)
                 wanted = values_of(others)
                 if are_near(at, cause.values, cause.usual, least) and are_near(
                     wanted, cause.before, 1.0, least
@@ -217,25 +217,20 @@ class HypothesisFit:
             candidates.append(replace(candidate, causes=tuple(causes)))
         return tuple(candidates) if moved else None
 
-    def _beside(
-        self, effect: Effect, everywhere: bool, others: Sequence[tuple[Cause, np.ndarray]]
-    ) -> Samples:
+    def _beside(self, effect: Effect, everywhere: bool, others: Sequence[Acting]) -> Samples:
         """Samples that show an effect, in all logs or in those under test, as others leave them;
         the last ones are kept, as many effects are tried beside one hypothesis.
         """
         samples = self.evidence.samples if everywhere else self.evidence.tests
         if not others:
             return samples
-        kind = everywhere, effect.by_load
-        acting = tuple((cause.effect, cause.location, cause.standing) for cause, _ in others)
-        wanted = acting, values_of(others)
+        kind, wanted = (
+            (everywhere, effect.by_load),
+            (tuple(c[:3] for c in others), values_of(others)),
+        )
         known, left = self._left.get(kind, (None, samples))
         if known != wanted:
-            left = (
-                carrying(samples, others, len(self.evidence.signals))
-                if effect.by_load
-                else after(samples, others)
-            )
+            left = beside(samples, effect, others, len(self.evidence.signals))
             self._left[kind] = wanted, left
         return left
 
