@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from hyperleg_design.gap.inference.cause import Cause
 
@@ -21,7 +22,7 @@ def unbounded(
         np.full(k, -np.inf),
         np.full(k, np.inf),
         np.zeros(k, bool),
-        columns,
+        csr_array(columns),
         np.zeros(columns.shape[1]) if constant is None else constant,
         constant is None,
     )

@@ -6,6 +6,8 @@ import numpy as np
 
 RIDGE = 1e-4
 """Mean square of a wave that is added, so that waves which nothing shows stay small [-]."""
+BLOCK = 16
+"""Orders that are computed together."""
 
 
 def fitted_waves(
@@ -27,21 +29,25 @@ def fitted_waves(
     Returns:
         What each explains, a sum of squares `(o,)`, and its c and s `(o, 2)`.
     """
-
-    def alone(rows: np.ndarray) -> np.ndarray:
-        return np.asarray(rows - beside @ (beside.T @ rows))
-
-    wanted = alone(wanted)
-    size = float(np.mean(np.square(np.broadcast_to(factor, wanted.shape)))) or 1.0
+    wanted = wanted - beside @ (beside.T @ wanted)
+    factor = np.broadcast_to(factor, wanted.shape)
+    ridge = RIDGE * (float(np.mean(np.square(factor))) or 1.0) * len(wanted) * np.eye(2)
     gains, amplitudes = np.empty(len(orders)), np.empty((len(orders), 2))
-    for row, order in enumerate(orders):
-        wave = np.stack([np.cos(order * angle), np.sin(order * angle)], -1)
-        wave = alone(wave * np.reshape(factor, (-1, 1)))
-        gram = wave.T @ wave
-        gram[np.diag_indices(2)] += RIDGE * size * len(wanted)
-        right = wave.T @ wanted
-        amplitudes[row] = np.linalg.solve(gram, right)
-        gains[row] = right @ amplitudes[row]
+    wave, turn, last, step = factor.astype(complex), np.ones(1), 0.0, 0.0
+    for first in range(0, len(orders), BLOCK):
+        some = orders[first : first + BLOCK]
+        waves = np.empty((2, len(some), len(wanted)))
+        for row, order in enumerate(some):
+            if order - last != step:
+                step = order - last
+                turn = np.exp(1j * step * angle)
+            wave, last = wave * turn, order
+            waves[:, row] = wave.real, wave.imag
+        taken, right = waves @ beside, (waves @ wanted).T
+        gram = np.einsum("iot,jot->oij", waves, waves) - np.einsum("iob,job->oij", taken, taken)
+        sizes = np.linalg.solve(gram + ridge, right[..., None])[..., 0]
+        amplitudes[first : first + BLOCK] = sizes
+        gains[first : first + BLOCK] = np.sum(right * sizes, -1)
     return gains, amplitudes
 
 

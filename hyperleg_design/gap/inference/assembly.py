@@ -93,7 +93,9 @@ class Evidence:
         return replace(
             cause,
             factors=tuple(
-                self.with_numbers(term, cause.columns[term.parameter], cause.standing)
+                self.with_numbers(
+                    term, cause.compact[[term.parameter]].toarray()[0], cause.standing
+                )
                 if isinstance(term, Factor)
                 else term
                 for term in cause.factors
@@ -111,8 +113,10 @@ class Evidence:
         """
         if only is not None:
             constant = cause.constant * only if len(cause.constant) else cause.constant
-            cause = replace(cause, columns=cause.columns * only, constant=constant, factors=())
-        missing = len(self.samples.value) - cause.columns.shape[1]
+            own = cause.compact.multiply(only[None]).tocsr()
+            cause = replace(cause, compact=own, constant=constant, factors=())
+        whole = cause.compact.copy()
+        whole.resize(len(cause.nulls), len(self.samples.value))
         if self.references and not standing and cause.linear:
             bounds = WEIGHED[cause.effect].change_bounds(cause.location, self.signals[0].subject)
             low, high = np.where(cause.shape, (cause.low, cause.high), bounds)
@@ -120,8 +124,8 @@ class Evidence:
         return self.scaled(
             replace(
                 cause,
-                columns=np.pad(cause.columns, ((0, 0), (0, missing))),
-                constant=np.pad(cause.constant, (0, missing))
+                compact=whole,
+                constant=np.pad(cause.constant, (0, whole.shape[1] - len(cause.constant)))
                 if len(cause.constant)
                 else cause.constant,
                 standing=standing,

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.shrinking import Shrinking
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,10 +31,10 @@ class Cause:
     """Bounds `(k,)` each."""
     shape: np.ndarray
     """Parameters that only shape `(k,)` of bool."""
-    columns: np.ndarray
-    """`(k, S)` in the residual's unit."""
+    compact: csr_array
+    """`columns`, without their zeros: most effects show in a few rows of many."""
     constant: np.ndarray
-    """`(S,)`; 0 where the trace is linear."""
+    """`(S,)`; empty where the trace is linear."""
     linear: bool
     declared: float = 0.0
     """Payload that the logs declare at its place [kg]."""
@@ -45,6 +49,11 @@ class Cause:
     """Whether it acts in all logs, reference logs included, not in those under test alone."""
     before: tuple[float, ...] = ()
     """Values of the causes that it acts on, where it is linearised beside any."""
+
+    @property
+    def columns(self) -> np.ndarray:
+        """In the residual's unit `(k, S)`."""
+        return np.asarray(self.compact.toarray())
 
     @property
     def name(self) -> tuple[str, str]:

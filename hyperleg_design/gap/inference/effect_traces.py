@@ -10,6 +10,7 @@ from itertools import zip_longest
 from typing import TypeAlias
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.effect import Effect
@@ -50,10 +51,15 @@ class Starts:
 
     values: np.ndarray
     """`(s, k)`"""
-    columns: np.ndarray
-    """Traces of which theirs are sums `(p, S)`."""
+    compact: csr_array
+    """`columns`, without their zeros."""
     weights: np.ndarray | None = None
     """How much of each trace those of the starts hold `(s, p)`; None where they are the columns."""
+
+    @property
+    def columns(self) -> np.ndarray:
+        """Traces of which theirs are sums `(p, S)`."""
+        return np.asarray(self.compact.toarray())
 
     @property
     def traces(self) -> np.ndarray:
@@ -116,7 +122,7 @@ def _traced(evidence: Evidence, place: tuple[str, str]) -> list[Traces]:
         ]
         whole = [evidence.on_all_samples(cause, True) for cause in whole]
     else:
-        own = replace(whole, columns=whole.columns[:, :count])
+        own = replace(whole, compact=whole.compact[:, :count])
         if reach(evidence.tests, own.traces) < SHOWN:
             own = []
     if not own:
@@ -155,7 +161,7 @@ def trace(samples: Samples, effect: Effect, location: str) -> Traces:
         columns = trace_columns(samples, effect, location, starts)
     if columns is None:
         return unexcited
-    begun = Starts(starts, columns, weights)
+    begun = Starts(starts, csr_array(columns), weights)
     return unexcited if reach(samples, begun.traces) < SHOWN else begun
 
 

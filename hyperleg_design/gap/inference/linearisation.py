@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.inference.cause import Cause
@@ -45,7 +46,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         traced = trace_columns(samples, effect, location, settings)
         if traced is None:
             return None
-        columns, constant = traced, np.zeros(traced.shape[1])
+        columns, constant = traced, np.zeros(0)
     else:
         values = np.clip(values, low, high)
         fixed = effect.fixed(values)
@@ -77,7 +78,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
         low=low,
         high=high,
         shape=shape,
-        columns=columns,
+        compact=csr_array(columns),
         constant=constant,
         linear=effect.linear,
         declared=declared,
@@ -136,9 +137,9 @@ def under_test(cause: Cause, tests: Samples) -> Cause | None:
     Returns:
         The cause on these alone; None where they do not show it.
     """
-    columns = cause.columns[:, : len(tests.value)]
-    if reach(tests, columns) < SHOWN:
+    compact = cause.compact[:, : len(tests.value)]
+    if reach(tests, compact.toarray()) < SHOWN:
         return None
     scaled = factors_of(tests, cause.effect, cause.location, cause.usual, cause.values)
     constant = cause.constant[: len(tests.value)]
-    return replace(cause, columns=columns, constant=constant, factors=scaled)
+    return replace(cause, compact=compact, constant=constant, factors=scaled)

@@ -269,9 +269,9 @@ def traced(filtered_log: FilteredLog, traces: Mapping[str, np.ndarray]) -> dict[
         Samples by row, `(k, samples)` each; rows that the traces leave alone are missing.
     """
     samples = {}
+    shown = {n: ((x != 0) & np.isfinite(x)).any((0, 1)) for n, x in traces.items()}
     for place, row in enumerate(filtered_log.rows):
-        if row.residual_name in traces:
+        if row.residual_name in traces and shown[row.residual_name][row.column]:
             values = traces[row.residual_name][..., row.column]
-            if np.any(np.nan_to_num(values) != 0):
-                samples[place] = filtered_log.sample(place, values)
+            samples[place] = filtered_log.sample(place, values)
     return samples

@@ -2,6 +2,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
@@ -23,7 +24,6 @@ def values_of(effect, values, deviation, torque_error=0.0, subject=SUBJECT):
     one = EFFECTS[effect]
     count = len(one.nulls)
     low, high = (np.array([getattr(p, end) for p in one.parameters]) for end in ("low", "high"))
-    none = np.zeros((count, 0))
     cause = Cause(
         effect,
         "swing",
@@ -33,8 +33,8 @@ def values_of(effect, values, deviation, torque_error=0.0, subject=SUBJECT):
         low,
         high,
         np.zeros(count, bool),
-        none,
-        none,
+        csr_array((count, 0)),
+        np.zeros(0),
         True,
     )
     return intervals(cause, np.array(values), np.array(deviation), subject, torque_error)

@@ -52,14 +52,16 @@ def test_a_stronger_toe_is_not_called_weak(tmp_path, monkeypatch):
 @pytest.fixture(scope="module")
 def demand(tmp_path_factory):
     folder = tmp_path_factory.mktemp("demand")
-    return study_motion.demand(context_of(load_design("hyperleg"), folder)), folder
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study_motion, "MOTIONS", ("walk", "squat"))  # the study's own test has all
+        return study_motion.demand(context_of(load_design("hyperleg"), folder)), folder
 
 
 def test_the_table_holds_every_variant_in_every_motion(demand):
     made, folder = demand
     found = json.loads((folder / "demand.json").read_text())
     table = next(c for c in made.section.content if isinstance(c, Table))
-    assert len(table.rows) == sum(len(v) for v in found.values()) == 16
+    assert len(table.rows) == sum(len(v) for v in found.values()) == 8
     for row in table.rows:
         assert row[4] == pytest.approx(row[2] + row[3])  # motors = Joule + mechanical
 

@@ -18,6 +18,7 @@ def trial(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_friction_and_a_gain_are_named_a_healthy_servo_is_not_blamed_and_drag_is_not_in_the_catalogue(  # noqa: E501
     trial,
 ):

@@ -160,14 +160,13 @@ class Proposer:
         """
         if name not in self._crossings:
             weight = self.evidence.weight
-            weighted = [
-                np.pad(
-                    columns * weight[: columns.shape[1]],
-                    ((0, 0), (0, len(weight) - columns.shape[1])),
-                )
-                for columns in self.options(name)[1]
-            ]
-            self._crossings[name] = Crossing.of(self.evidence.channels, np.concatenate(weighted))
+            options = self.options(name)[1]
+            weighted, at = np.zeros((sum(map(len, options)), len(weight))), 0
+            for columns in options:
+                count = columns.shape[1]
+                weighted[at : at + len(columns), :count] = columns * weight[:count]
+                at += len(columns)
+            self._crossings[name] = Crossing.of(self.evidence.channels, weighted)
         return self._crossings[name]
 
     def proposals(

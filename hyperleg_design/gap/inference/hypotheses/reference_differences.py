@@ -145,7 +145,7 @@ def _traces_in(search: Search, only: np.ndarray) -> dict[Name, Traces]:
             own = [evidence.on_all_samples(c, False, only) for c in traced if not c.factors]
             shown = [cause.columns for cause in own]
         elif isinstance(traced, Starts) and not (weighed.scales or weighed.holds_back):
-            own = cut = replace(traced, columns=traced.columns * only)
+            own = cut = replace(traced, compact=traced.compact.multiply(only[None]).tocsr())
             shown = [cut.traces]
         else:
             continue

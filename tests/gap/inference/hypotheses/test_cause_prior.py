@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
@@ -35,7 +36,7 @@ def prior(*sizes, location=EVERYWHERE, standing=False, evidence=EVIDENCE):
             -1e3 * one,
             1e3 * one,
             np.zeros(1, bool),
-            np.zeros((1, 4)),
+            csr_array((1, 4)),
             np.zeros(4),
             linear=True,
             standing=standing,

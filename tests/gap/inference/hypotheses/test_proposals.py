@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from causes import unbounded
+from scipy.sparse import csr_array
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.assembly import evidence_of
@@ -37,7 +38,7 @@ def test_gains_are_those_of_all_columns_at_once(constant, alone):
     linear, starts = rng.standard_normal((2, size)), rng.standard_normal((3, tested))
     traces = {
         ("coulomb_friction", "knee", False): [unbounded("coulomb_friction", "knee", linear)],
-        ("command_delay", "robot", False): Starts(np.arange(3.0)[:, None], starts),
+        ("command_delay", "robot", False): Starts(np.arange(3.0)[:, None], csr_array(starts)),
         ("payload", "foot", False): NotJudged("payload", "foot", "no motion"),
     }
     acting = unbounded(
@@ -80,7 +81,7 @@ def test_the_starts_that_gain_most_are_among_those_solved(seed):
     weight = rng.uniform(0.5, 2.0, size)
     evidence = SimpleNamespace(channels=channels, weight=weight)
     starts = rng.standard_normal((12, size)) + rng.standard_normal(size)
-    traces = {("command_delay", "robot", True): Starts(np.arange(12.0)[:, None], starts)}
+    traces = {("command_delay", "robot", True): Starts(np.arange(12.0)[:, None], csr_array(starts))}
     acting = unbounded("spring", "knee", rng.standard_normal((2, size)))
     found = Proposer(evidence, RULES, traces).proposals([acting], (SCALES, SCALES))
 
@@ -91,7 +92,7 @@ def test_the_starts_that_gain_most_are_among_those_solved(seed):
         return solve(products, low, high, np.zeros(len(low), bool), RULES).gain
 
     stack = Stack.of([acting], weight)
-    acting = replace(acting, columns=stack.columns)
+    acting = replace(acting, compact=csr_array(stack.columns))
     alone = gain(np.zeros((0, size)))
     every = np.array([gain(one[None] * weight) for one in starts]) - alone
     best = np.argsort(-every)[: RULES.search.starts]
@@ -117,7 +118,7 @@ def test_a_start_that_scales_torques_is_charged_for_it_as_a_cause_is(search):
 def test_a_start_that_scales_no_torque_is_charged_nothing(search):
     name = ("command_delay", "robot", False)
     proposer = Proposer(
-        search.evidence, search.rules, {name: Starts(np.ones((3, 1)), np.ones((3, 4)))}
+        search.evidence, search.rules, {name: Starts(np.ones((3, 1)), csr_array(np.ones((3, 4))))}
     )
     assert proposer.scaling(name) == [(), (), ()]
 
