@@ -19,8 +19,8 @@ from hyperleg_design.evaluation.policy import (
     policy_name,
 )
 from hyperleg_design.evaluation.signal_blocks import SignalBlocks
+from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.simulation.drives.told import TOLD
-from hyperleg_design.simulation.layout import GRAVITY
 from hyperleg_design.simulation.stepping.record import signals_of
 from hyperleg_design.simulation.terms import terminations
 

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
     from hyperleg_design.robot.parameters.described import RobotDesign
 
+GRAVITY = 9.81
+"""Gravitational acceleration [m/s^2], as Pinocchio and MuJoCo have it."""
+
 
 @dataclass(frozen=True, eq=False)
 class RigidBodyModel:

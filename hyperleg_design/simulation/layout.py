@@ -17,15 +17,13 @@ from hyperleg_design.robot import transmission
 from hyperleg_design.robot.kinematics.dimensions import total_mass
 from hyperleg_design.robot.kinematics.posture import default_angles, link_poses, lowest_point
 from hyperleg_design.robot.kinematics.tree import build_tree
+from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.robot.parameters.described import prefixed
 from hyperleg_design.simulation.symmetry import mirrored_joints, mirrored_order
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.kinematics.kinematic_tree import Tree
     from hyperleg_design.robot.parameters.described import RobotDesign
-
-GRAVITY = 9.81
-"""Gravitational acceleration [m/s^2], as in the MuJoCo model."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,8 @@ from typing_extensions import override
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.mjcf import FLOOR
+from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick
-from hyperleg_design.simulation.layout import GRAVITY
 
 if TYPE_CHECKING:
     import mujoco

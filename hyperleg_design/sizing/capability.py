@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
-from hyperleg_design.robot.models import RigidBodyModel, rigid_body_model
+from hyperleg_design.robot.models import GRAVITY, RigidBodyModel, rigid_body_model
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.robot.transmission import (
     joint_from_motor,
@@ -41,7 +41,6 @@ from hyperleg_design.sizing.kinematics import (
     leg_reach,
 )
 from hyperleg_design.sizing.motions.foot_path import rolling
-from hyperleg_design.sizing.motions.motion import GRAVITY
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design

@@ -16,6 +16,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.laws import friction
 from hyperleg_design.robot.laws.friction import FRICTION_SPEED
+from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.robot.transmission import (
     joint_from_motor,
@@ -27,7 +28,7 @@ from hyperleg_design.sizing.allocation import Allocation, least_heat
 from hyperleg_design.sizing.contacts import contact_kinematics
 from hyperleg_design.sizing.energy import EnergyLedger, EnergySums, cost_of_transport, energy_ledger
 from hyperleg_design.sizing.envelope import MotorEnvelope, motor_envelope, torque_limits
-from hyperleg_design.sizing.motions.motion import GRAVITY, Motion
+from hyperleg_design.sizing.motions.motion import Motion
 from hyperleg_design.sizing.motions.reference import reference_motion
 from hyperleg_design.sizing.thermal import thermal_use
 

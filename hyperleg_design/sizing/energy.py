@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.sizing.motions.motion import GRAVITY
+from hyperleg_design.robot.models import GRAVITY
 
 
 @dataclass(frozen=True, eq=False)

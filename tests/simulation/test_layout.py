@@ -6,7 +6,8 @@ import pytest
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.kinematics.dimensions import zero_height
 from hyperleg_design.robot.load import load_robot
-from hyperleg_design.simulation.layout import GRAVITY, layout_of
+from hyperleg_design.robot.models import GRAVITY
+from hyperleg_design.simulation.layout import layout_of
 
 
 @pytest.mark.parametrize(

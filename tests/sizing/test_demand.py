@@ -6,11 +6,11 @@ import pytest
 from hyperleg_design.errors import InfeasibleError, InputError
 from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.robot.transmission import joint_from_motor, joint_names, motor_names
 from hyperleg_design.sizing.contacts import contact_kinematics
 from hyperleg_design.sizing.demand import Demand, demand, demands, joint_friction, required_forces
-from hyperleg_design.sizing.motions.motion import GRAVITY
 from hyperleg_design.sizing.motions.reference import reference_motion
 
 

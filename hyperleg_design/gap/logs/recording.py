@@ -27,12 +27,12 @@ from hyperleg_design.evaluation.rollout import Trial
 from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log, write_log
 from hyperleg_design.gap.logs.metadata import Metadata
-from hyperleg_design.robot.models import quaternion_matrix
+from hyperleg_design.robot.models import GRAVITY, quaternion_matrix
 from hyperleg_design.robot.motors import find_motor
 from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.simulation.drives.actuation import ActuationModel, actuation_model
 from hyperleg_design.simulation.drives.told import TOLD
-from hyperleg_design.simulation.layout import GRAVITY, Layout
+from hyperleg_design.simulation.layout import Layout
 from hyperleg_design.writing import output_folder, write_text
 
 JOINT_SIGNALS = {

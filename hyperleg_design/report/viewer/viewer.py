@@ -20,7 +20,7 @@ from hyperleg_design.report.viewer.sliders import HIGHEST, LOWEST, changed, para
 from hyperleg_design.robot.kinematics.dimensions import total_mass
 from hyperleg_design.robot.kinematics.posture import default_angles, link_poses, lowest_point
 from hyperleg_design.robot.kinematics.tree import build_tree
-from hyperleg_design.simulation.layout import GRAVITY
+from hyperleg_design.robot.models import GRAVITY
 
 if TYPE_CHECKING:
     from hyperleg_design.report.viewer.walk import RecordedWalk

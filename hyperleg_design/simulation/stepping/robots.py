@@ -6,8 +6,9 @@ import dataclasses
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.simulation.alteration import Alteration
-from hyperleg_design.simulation.layout import GRAVITY, Layout, layout_of
+from hyperleg_design.simulation.layout import Layout, layout_of
 from hyperleg_design.simulation.model import simulated_robots, simulation_model
 from hyperleg_design.simulation.surroundings import UnevenFloor
 from hyperleg_design.simulation.tasks import Task

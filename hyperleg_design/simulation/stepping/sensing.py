@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.simulation.drives.chain import Chain
-from hyperleg_design.simulation.layout import GRAVITY
 from hyperleg_design.simulation.state import Motion, Sensed
 
 

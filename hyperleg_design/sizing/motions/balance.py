@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InfeasibleError
+from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.sizing.kinematics import about_x, hip_center, leg_reach
 from hyperleg_design.sizing.motions.foot_path import FootPath
 from hyperleg_design.sizing.motions.motion import (
-    GRAVITY,
     PelvisPath,
     check_ranges,
     ground_wrench,

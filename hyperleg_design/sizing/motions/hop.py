@@ -16,12 +16,11 @@ import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
 from hyperleg_design.robot.kinematics.tree import SIGN
-from hyperleg_design.robot.models import rigid_body_model
+from hyperleg_design.robot.models import GRAVITY, rigid_body_model
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.sizing.motions.balance import highest_pelvis
 from hyperleg_design.sizing.motions.foot_path import FLAT, SWING, FootPath, bump
 from hyperleg_design.sizing.motions.motion import (
-    GRAVITY,
     Motion,
     PelvisPath,
     check_positive,

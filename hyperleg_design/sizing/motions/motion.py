@@ -24,9 +24,6 @@ from hyperleg_design.sizing.motions.foot_path import FootPath
 if TYPE_CHECKING:
     from hyperleg_design.robot.models import RigidBodyModel
 
-GRAVITY = 9.81
-"""Gravitational acceleration [m/s^2], as Pinocchio and MuJoCo have it."""
-
 
 @dataclass(frozen=True, eq=False)
 class PelvisPath:

@@ -29,9 +29,9 @@ import numpy as np
 
 from hyperleg_design.robot.mass.bodies import Inertial
 from hyperleg_design.robot.masses import mass_table
+from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.robot.names import JOINTS
 from hyperleg_design.robot.transmission import joint_names
-from hyperleg_design.sizing.motions.motion import GRAVITY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

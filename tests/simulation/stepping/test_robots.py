@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.playback.overlay import Overlay
-from hyperleg_design.simulation.layout import GRAVITY, layout_of
+from hyperleg_design.robot.models import GRAVITY
+from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.stepping.robots import robots_of
 from hyperleg_design.simulation.tasks import load_task
 

@@ -3,8 +3,9 @@ import pytest
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.sizing.motions.hop import HopPlan, hop, load_pulse
-from hyperleg_design.sizing.motions.motion import GRAVITY, ground_wrench
+from hyperleg_design.sizing.motions.motion import ground_wrench
 
 
 @pytest.fixture(scope="module")

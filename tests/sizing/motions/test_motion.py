@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.robot.names import SIDES, VARIANTS
 from hyperleg_design.sizing.contacts import contact_kinematics
-from hyperleg_design.sizing.motions.motion import GRAVITY, Motion, ground_wrench, zero_moment_offset
+from hyperleg_design.sizing.motions.motion import Motion, ground_wrench, zero_moment_offset
 from hyperleg_design.sizing.motions.reference import MOTIONS, reference_motion
 from hyperleg_design.sizing.motions.stair import StairPlan
 

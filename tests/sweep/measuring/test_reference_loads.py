@@ -4,10 +4,9 @@ import pytest
 from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.mass.inertials import inertials
-from hyperleg_design.robot.models import rigid_body_model
+from hyperleg_design.robot.models import GRAVITY, rigid_body_model
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.robot.transmission import joint_names
-from hyperleg_design.sizing.motions.motion import GRAVITY
 from hyperleg_design.sweep.measuring import reference_loads
 from hyperleg_design.sweep.measuring.reference_loads import StaticLoad
 
