@@ -243,6 +243,7 @@ def _shaken(signals: Signals) -> np.ndarray:
     return variance
 
 
+@memoized
 def of_acceleration(filtered_log: FilteredLog, row: int) -> tuple[np.ndarray, np.ndarray]:
     """Compute the noise of a row that comes from noise of accelerations.
 
@@ -267,6 +268,7 @@ def of_acceleration(filtered_log: FilteredLog, row: int) -> tuple[np.ndarray, np
     return np.concatenate(feigned), np.concatenate(rate)
 
 
+@memoized
 def of_load(filtered_log: FilteredLog, row: int) -> np.ndarray:
     """Compute the noise of the needed torque, beside that of accelerations: what sensors of forces
     under the feet leave, and forces that change between two samples.

@@ -10,12 +10,14 @@ from weakref import WeakKeyDictionary
 Owner = TypeVar("Owner")
 Rest = ParamSpec("Rest")
 Result = TypeVar("Result")
+MOST = 256
+"""Results of one function of one object that are kept."""
 
 
 def memoized(
     function: Callable[Concatenate[Owner, Rest], Result],
 ) -> Callable[Concatenate[Owner, Rest], Result]:
-    """Keep the results of a function while its first argument lives.
+    """Keep the last `MOST` results of a function while its first argument lives.
 
     Args:
         function: of an object that can be referred to weakly, and of hashable arguments; what it
@@ -29,8 +31,11 @@ def memoized(
     @wraps(function)
     def keeping(owner: Owner, /, *rest: Rest.args, **named: Rest.kwargs) -> Result:
         own, key = results.setdefault(owner, {}), (rest, *sorted(named.items()))
-        if key not in own:
-            own[key] = function(owner, *rest, **named)
-        return own[key]
+        if key in own:
+            return own[key]
+        result = own[key] = function(owner, *rest, **named)
+        if len(own) > MOST:
+            own.pop(next(iter(own)), None)
+        return result
 
     return keeping

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cache
-
 import numpy as np
 
 from hyperleg_design.gap.effects.series import band_limited
@@ -47,28 +44,21 @@ def slack(
             that is left behind, and not on a rotor that crosses.
     """
     position = np.zeros((len(play), len(signals.time)))
-    pushed = cache(lambda: _pushed(signals, motor))
-    kicks: dict[bool, list[float]] = {}
-    for row, width in enumerate(play):
+    for row, width in enumerate(play.tolist()):
         if width <= 0:
             continue
         at_rotor = bool(side[row] >= CHOSEN)
         free = 1.0 if at_rotor else float(coasting[row])
         if free > 0:
-            if at_rotor not in kicks:
-                push = _joint_alone(signals, motor) if at_rotor else _rotor_alone(signals, motor)
-                kicks[at_rotor] = (np.nan_to_num(push) * signals.step).tolist()
-            bounce = 0.0 if at_rotor else RESTITUTION
             beyond = 0.0 if behind is None else float(behind[row])
             part = float(beyond >= CHOSEN) if at_rotor else 1.0 - beyond
-            rubbing = _Rubbing.of(signals, motor, at_rotor, part) if part else None
-            path = _bounced(kicks[at_rotor], signals.step, float(width) / 2, bounce, rubbing)
-            position[row] = free * np.array(path)
+            position[row] = free * _bounced(signals, motor, width / 2, at_rotor, part)
         if free < 1:
-            position[row] += (1 - free) * float(width) / 2 * pushed()
+            position[row] += (1 - free) * width / 2 * _pushed(signals, motor)
     return position
 
 
+@memoized
 def _pushed(signals: Signals, motor: int) -> np.ndarray:
     """To which end of its dead zone the load pushes a rotor, from -1 to 1 `(t,)`."""
     through = load(signals, motor)
@@ -78,67 +68,26 @@ def _pushed(signals: Signals, motor: int) -> np.ndarray:
     )
 
 
-@dataclass(frozen=True)
-class _Rubbing:
-    """What slows a rotor, or the joints left behind by it."""
+@memoized
+def _bounced(signals: Signals, motor: int, half: float, at_rotor: bool, part: float) -> np.ndarray:
+    """Position of a rotor between the ends of its dead zone, `half` away from its middle, from the
+    accelerations of what moves by itself and a part of the friction `(t,)` [rad].
 
-    sign: float
-    """Of the body's own speed in that of the rotor against its joints."""
-    turning: list[float]
-    """Speed of the body whose motion is known, on the motor's side [rad/s]."""
-    drops: list[float]
-    """Speed that Coulomb friction takes in a tick [rad/s]."""
-    keeps: list[float]
-    """Share of the speed that viscous friction leaves in a tick [-]."""
-
-    @classmethod
-    def of(cls, signals: Signals, motor: int, at_rotor: bool, part: float) -> _Rubbing:
-        """Collect a part of the friction: on a rotor, or on joints where the rotor's motion is
-        logged.
-
-        Args:
-            signals: of a log.
-            motor: index of the motor.
-            at_rotor: whether the friction acts on the rotor.
-            part: share of the friction that acts there [-].
-        """
-        subject, coulomb = signals.subject, dry_friction(signals)
-        inertia = _inertia(signals, motor) if at_rotor else rotor(subject, motor)
-        slowed = np.broadcast_to(signals.step / inertia, signals.time.shape)
-        share = np.abs(subject.motor_from_joint[motor])
-        turning = np.nan_to_num(signals.velocity @ subject.joint_from_motor[:, motor])
-        return cls(
-            -1.0 if at_rotor else 1.0,
-            turning.tolist(),
-            (part * float(share @ coulomb) * slowed).tolist(),
-            np.exp(-part * float(share**2 @ subject.viscous) * slowed).tolist(),
-        )
-
-    def slowed(self, tick: int, speed: float) -> float:
-        """Speed of the rotor against its joints after a tick; friction at most stops the body.
-
-        Args:
-            tick: number of the tick.
-            speed: without friction [rad/s].
-        """
-        turning, drop = self.turning[tick], self.drops[tick]
-        own = (turning + self.sign * speed) * self.keeps[tick]
-        own = max(own - drop, 0.0) if own > 0 else min(own + drop, 0.0)
-        return self.sign * (own - turning)
-
-
-def _bounced(
-    kicks: list[float], step: float, half: float, restitution: float, rubbing: _Rubbing | None
-) -> list[float]:
-    """Places of a body between two walls, from its changes of speed, and from its friction if it
-    rubs; plain numbers, as arrays of a few are slower.
+    What moves by itself is the rotor, or, where the rotor's motion is logged, its joints. Plain
+    numbers, as arrays of a few are slower.
     """
-    place, speed = half if kicks[0] > 0 else -half, 0.0
+    subject = signals.subject
+    kicks, turning, slowed = _driven(signals, motor, at_rotor)
+    share = np.abs(subject.motor_from_joint[motor])
+    drops = part * float(share @ dry_friction(signals)) * slowed
+    keeps = np.exp(-part * float(share**2 @ subject.viscous) * slowed)
+    restitution, sign = (0.0, -1.0) if at_rotor else (RESTITUTION, 1.0)
+    place, speed, step = half if kicks[0] > 0 else -half, 0.0, signals.step
     places = []
-    for tick, change in enumerate(kicks):
-        speed += change
-        if rubbing is not None:
-            speed = rubbing.slowed(tick, speed)
+    for kick, known, drop, keep in zip(kicks, turning, drops.tolist(), keeps.tolist(), strict=True):
+        own = (known + sign * (speed + kick)) * keep  # friction at most stops it
+        own = own - drop if own > drop else own + drop if own < -drop else 0.0
+        speed = sign * (own - known)
         place += step * speed
         if place > half:
             place = half
@@ -149,7 +98,26 @@ def _bounced(
             if speed < 0:
                 speed *= -restitution
         places.append(place)
-    return places
+    return np.array(places)
+
+
+@memoized
+def _driven(
+    signals: Signals, motor: int, at_rotor: bool
+) -> tuple[list[float], list[float], np.ndarray]:
+    """By tick: the change of a rotor's speed against its joints without friction [rad/s], the speed
+    of the body whose motion is logged, on the motor's side [rad/s], and the change of the other
+    body's speed by a torque `(t,)` [rad/s/Nm].
+    """
+    subject = signals.subject
+    push = _joint_alone(signals, motor) if at_rotor else _rotor_alone(signals, motor)
+    inertia = _inertia(signals, motor) if at_rotor else rotor(subject, motor)
+    turning = np.nan_to_num(signals.velocity @ subject.joint_from_motor[:, motor])
+    return (
+        (np.nan_to_num(push) * signals.step).tolist(),
+        turning.tolist(),
+        np.broadcast_to(signals.step / inertia, signals.time.shape),
+    )
 
 
 @memoized
