@@ -69,7 +69,7 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
             columns = np.concatenate([columns, stack.constant[None] * fitted]) if last else columns
             part = replace(evidence, channels=channels)
             products = shifted(reduced(part, hypothesis.scales, columns), last)
-            solution = solve(products, stack.low, stack.high, stack.shape, rules, stack.factors)
+            solution = solve(products, stack.low, stack.high, stack.shape, rules, stack.groups)
             left = solution.theta @ stack.columns + stack.constant
             for piece, cause in zip(hypothesis.parts, hypothesis.causes, strict=True):
                 if cause.standing:

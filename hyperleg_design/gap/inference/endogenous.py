@@ -77,7 +77,8 @@ class Factor:
             The gradient `(causes,)`, and the negative Hessian `(causes, causes)`.
         """
         ratio = self.slope / self._left(phi)
-        return self.number * ratio.mean(1), self.number * (ratio @ ratio.T) / ratio.shape[1]
+        ticks = ratio.shape[1]
+        return self.number * (ratio.sum(1) / ticks), self.number * (ratio @ ratio.T) / ticks
 
     def _left(self, phi: np.ndarray) -> np.ndarray:
         return np.asarray(np.maximum(1 + self.level + phi @ self.slope, LEAST))

@@ -183,23 +183,35 @@ class Channel:
                 cross[cell], own[cell] = white @ mine.T, mine @ mine.T
         return cross, own
 
-    def between(
-        self, noise: np.ndarray, some: np.ndarray, others: Sequence[np.ndarray]
-    ) -> np.ndarray:
-        """Sum over all cells of products of columns over the noise.
+    def over_noise(self, noise: np.ndarray, columns: np.ndarray) -> list[np.ndarray]:
+        """Divide columns by the noise.
 
         Args:
             noise: by band `(b,)`.
-            some: weighted twice as the residual `(m, S)`.
+            columns: weighted twice as the residual `(m, S)`.
+
+        Returns:
+            By cell `(m, samples)`; `(m, 0)` where all are zero.
+        """
+        parts = []
+        for cut, over in zip(self._cuts, noise[self.band].tolist(), strict=True):
+            mine = columns[:, cut] / over
+            parts.append(mine if mine.any() else mine[:, :0])
+        return parts
+
+    def between(self, parts: Sequence[np.ndarray], others: Sequence[np.ndarray]) -> np.ndarray:
+        """Sum over all cells of products of columns over the noise.
+
+        Args:
+            parts: of m columns, as of `over_noise`.
             others: unweighted, `(n, S)` each, or shorter where they end with the logs under test.
 
         Returns:
             `(m, n)`, all others one after the other.
         """
-        products = np.zeros((len(some), sum(len(columns) for columns in others)))
-        for cut, over in zip(self._cuts, noise[self.band].tolist(), strict=True):
-            mine = some[:, cut] / over
-            if mine.shape[1] and mine.any():
+        products = np.zeros((len(parts[0]), sum(len(columns) for columns in others)))
+        for cut, mine in zip(self._cuts, parts, strict=True):
+            if mine.size:
                 last = cut.stop - 1 if isinstance(cut, slice) else cut[-1]
                 at = 0
                 for columns in others:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from scipy.special import erfcx
@@ -143,6 +144,11 @@ class Stack:
     """Parameters that scale the torque which the residual is made of, and the missing term of its
     density, see `endogenous`."""
 
+    @cached_property
+    def groups(self) -> list[tuple[list[int], Factor | Shrinking]]:
+        """`factors`, of which those that scale the same torque are one."""
+        return joined(self.factors)
+
     @property
     def constant_last(self) -> bool:
         """Whether `rows` ends with a constant trace."""
@@ -215,7 +221,7 @@ def solve(
     high: np.ndarray,
     shape: np.ndarray,
     rules: InferenceRules,
-    factors: Sequence[tuple[int, Factor | Shrinking]] = (),
+    groups: Sequence[tuple[list[int], Factor | Shrinking]] = (),
     near: np.ndarray | None = None,
 ) -> Solution:
     """Compute the posterior of causes by Laplace's method, which is exact where all are linear and
@@ -230,21 +236,21 @@ def solve(
         high: the same.
         shape: parameters that only shape a trace; their prior deviation is 1 `(k,)`.
         rules: of the inference.
-        factors: as of `Stack`.
+        groups: as of `Stack`.
         near: theta of a solution of about the same problem, of the first parameters `(j,)`; without
             it, small and large sizes are both looked for.
     """
     # columns that are alike to rounding must not make the normal equations singular
     normal = products[1:, 1:] * (1 + ALIKE * np.eye(len(low)))
-    groups = joined(factors)
     begin, wide = np.zeros(len(low)), np.full(len(low), FREE)
     firsts = [np.full(len(low), rules.cause.width), wide]
     if near is not None:
         begin[: len(near)] = near
         wide[: len(near)] = np.maximum(rules.cause.width, np.abs(near))
         firsts = [wide]
+    squares = [(own, np.ix_(own, own), factor) for own, factor in groups]
     fits = [
-        _solve(normal, products[1:, 0], low, high, shape, rules, groups, begin, first)
+        _solve(normal, products[1:, 0], low, high, shape, rules, squares, begin, first)
         for first in firsts
     ]
     theta, precision, gain, occam = max(fits, key=lambda fit: fit[2])
@@ -259,7 +265,7 @@ def _solve(
     high: np.ndarray,
     shape: np.ndarray,
     rules: InferenceRules,
-    groups: Sequence[tuple[list[int], Factor | Shrinking]],
+    groups: Sequence[tuple[list[int], Any, Factor | Shrinking]],
     theta: np.ndarray,
     first: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, float, float]:
@@ -274,14 +280,14 @@ def _solve(
                 break
             deviation = wider
         precision, target = normal + np.diag(1 / deviation**2), right.copy()
-        for own, factor in groups:
+        for own, square, factor in groups:
             slope, bend = factor.slopes(theta[own])
-            precision[np.ix_(own, own)] += bend
+            precision[square] += bend
             target[own] += slope + bend @ theta[own]
         theta = within_bounds(precision, target, low, high)
     occam = -0.5 * float(np.sum((theta / deviation) ** 2))
     occam -= float(np.sum(np.log(deviation))) + 0.5 * float(np.linalg.slogdet(precision)[1])
-    occam += sum(factor.log(theta[own]) for own, factor in groups)
+    occam += sum(factor.log(theta[own]) for own, _, factor in groups)
     occam += _beyond(theta, precision, target, low, high, shape)
     gain = float(right @ theta - 0.5 * theta @ normal @ theta)
     return theta, precision, gain + occam, occam

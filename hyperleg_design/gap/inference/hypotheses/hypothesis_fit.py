@@ -17,7 +17,7 @@ from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scale_fit import STEPS, first_scales, fitted
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, Traces
-from hyperleg_design.gap.inference.endogenous import Factor, joined
+from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypotheses.cause_prior import log_prior
 from hyperleg_design.gap.inference.hypotheses.hypothesis import (
     Candidate,
@@ -150,7 +150,7 @@ class HypothesisFit:
         size = (cause.values - cause.nulls) / cause.usual
         low, high = (np.r_[end[: -len(size)], size] for end in (stack.low, stack.high))
         solution = self.at_scales(replace(stack, low=low, high=high), crossing, scales)
-        paid = sum(term.log(solution.theta[place]) for place, term in joined(stack.factors))
+        paid = sum(term.log(solution.theta[place]) for place, term in stack.groups)
         return solution.gain - solution.occam + paid
 
     def relinearised(self, hypothesis: Hypothesis) -> Hypothesis:
@@ -265,7 +265,7 @@ class HypothesisFit:
         """
         products = crossing.reduced(self.evidence.channels, scales)
         own = shifted(products, stack.constant_last)
-        solution = solve(own, stack.low, stack.high, stack.shape, self.rules, stack.factors, near)
+        solution = solve(own, stack.low, stack.high, stack.shape, self.rules, stack.groups, near)
         change = -0.5 * float(own[0, 0] - products[0, 0])
         return replace(solution, gain=solution.gain + change)
 

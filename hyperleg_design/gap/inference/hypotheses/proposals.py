@@ -17,7 +17,7 @@ from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, Starts, Traces
-from hyperleg_design.gap.inference.endogenous import Factor, factors_of, held_back_in_all
+from hyperleg_design.gap.inference.endogenous import Factor, factors_of, held_back_in_all, joined
 from hyperleg_design.gap.inference.hypotheses.hypothesis import ALIKE, Name, Solution, Stack, solve
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.shrinking import Shrinking
@@ -55,8 +55,9 @@ class _Beside:
     scales: tuple[Scales, ...]
     products: np.ndarray
     """Of the residual, the columns, and the constant trace where there is one."""
-    twice: np.ndarray
-    """Columns and constant trace, weighted twice as the residual `(k, S)`."""
+    parts: tuple[list[np.ndarray], ...]
+    """Columns and constant trace by channel and cell, weighted twice, over the noise; see
+    `Channel.over_noise`."""
     taken: tuple[np.ndarray, ...]
     """Of residual, columns and constant trace by channel, see `Channel.taken`."""
     solution: Solution | None
@@ -223,7 +224,12 @@ class Proposer:
                 whole[:, :, 1 + some] = cross[:, :-1]
             taken.append(channel.taken(own, whole))
         products = crossing.reduced(channels, scales)
-        base = _Beside(stack, crossing, scales, products, rows * weight, tuple(taken), None)
+        twice = rows * weight
+        parts = tuple(
+            channel.over_noise(own.noise, twice)
+            for channel, own in zip(channels, scales, strict=True)
+        )
+        base = _Beside(stack, crossing, scales, products, parts, tuple(taken), None)
         if causes:
             base = replace(base, solution=self._solved(base, products, np.zeros(0, int)))
         return base
@@ -235,10 +241,11 @@ class Proposer:
         rows = len(base.products)
         products = np.zeros((rows + crossing.count,) * 2)
         products[:rows, :rows] = base.products
-        for channel, scales, known, some, cross, own in zip(
+        for channel, scales, known, parts, some, cross, own in zip(
             self.evidence.channels,
             base.scales,
             base.taken,
+            base.parts,
             crossing.shown,
             crossing.cross,
             crossing.own,
@@ -251,7 +258,7 @@ class Proposer:
             beside = -known.T @ mine
             beside[0] += weight @ cross[:, -1]
             if rows > 1:
-                beside[1:] += channel.between(scales.noise, base.twice, columns)[:, some]
+                beside[1:] += channel.between(parts, columns)[:, some]
             at = rows + some
             products[:rows, at] += beside
             products[np.ix_(at, at)] += np.tensordot(weight, own, 1) - mine.T @ mine
@@ -355,7 +362,6 @@ class Proposer:
             own[:, 0] -= constant[some]
             own[0, 0] += constant[1 + known]
         stacks = [] if stack is None else [(stack.low, stack.high, stack.shape)]
-        factors = [] if stack is None else list(stack.factors)
         if cause is not None:
             low, high = ((end - cause.nulls) / cause.usual for end in (cause.low, cause.high))
             stacks.append((low, high, cause.shape))
@@ -363,7 +369,10 @@ class Proposer:
             low, high = (-np.inf, np.inf) if free else (0.0, LARGEST)
             count = len(place)
             stacks.append((np.full(count, low), np.full(count, high), np.zeros(count, bool)))
-        factors += [(known + term.parameter, term) for term in scaled]
+        groups = [] if stack is None else stack.groups
+        if scaled:
+            own_terms = ((known + term.parameter, term) for term in scaled)
+            groups = joined([*(() if stack is None else stack.factors), *own_terms])
         low, high, shape = (np.concatenate([s[i] for s in stacks]) for i in range(3))
         near = None if base.solution is None else base.solution.theta
-        return solve(own, low, high, shape.astype(bool), self.rules, factors, near)
+        return solve(own, low, high, shape.astype(bool), self.rules, groups, near)

@@ -131,7 +131,9 @@ def test_products_between_columns_are_summed_over_the_noise():
         ]
     )
     expected = (some / noise) @ np.concatenate(others).T
-    np.testing.assert_allclose(channel.between(SCALES.noise, some, others), expected, atol=1e-9)
+    np.testing.assert_allclose(
+        channel.between(channel.over_noise(SCALES.noise, some), others), expected, atol=1e-9
+    )
 
 
 def test_noise_like_the_references_is_healthy_and_far_above_it_is_not():
