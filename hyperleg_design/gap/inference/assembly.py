@@ -27,7 +27,7 @@ from hyperleg_design.gap.signals import filtering, resting
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import FilteredLog, place_of
 from hyperleg_design.gap.signals.signals import OF_SENSORS, Signals
-from hyperleg_design.gap.signals.sliding import dry_friction
+from hyperleg_design.gap.signals.sliding import dry_friction, viscous_friction
 
 MOST_BANDS = 5
 """Bands of a channel, see `filtering.EDGES`."""
@@ -212,7 +212,8 @@ def evidence_of(
         InputError: no log shows a residual.
     """
     subject, healthy = tests[0].subject, (*references, *tests)[0]
-    rubbing = replace(subject, coulomb=dry_friction(healthy))
+    shown = dry_friction(healthy), viscous_friction(healthy)
+    rubbing = replace(subject, coulomb=shown[0], viscous=shown[1])
     errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), rubbing)
     errors.sort(key=lambda error: not error.steady)
     sets = [_set(tests, errors, rules, tested=True)]

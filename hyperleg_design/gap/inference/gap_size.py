@@ -1,9 +1,9 @@
 """How large the gap is with the nominal model, with the causes, and without anything but noise.
 
 All three are root mean squares of what cross-validation leaves of the residuals under test, over
-their expected noise, of the channels that count: of those in which the causes show, or of all where
-there are none, those in the unit of the one with the largest excess over the noise, as far as their
-own is not much smaller.
+their expected noise, of the channels that count: of those in which the causes or something unlisted
+show, or of all where there are no causes, those in the unit of the one with the largest excess over
+the noise, as far as their own is not much smaller.
 """
 
 from __future__ import annotations
@@ -13,11 +13,12 @@ from functools import cached_property
 
 import numpy as np
 
+from hyperleg_design.gap.effects import UNLISTED
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cross_validation import Prediction
 from hyperleg_design.gap.inference.hypotheses.hypothesis import Hypothesis
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.unlisted import makes_noise
+from hyperleg_design.gap.inference.unlisted import makes_noise, unlisted
 from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.signals.signals import RESIDUALS
 
@@ -37,6 +38,8 @@ class GapSize:
     """The same with the causes."""
     noise: np.ndarray
     """The same that no cause can go below."""
+    odd: np.ndarray
+    """Channels in which something unlisted acts `(channels,)` of bool."""
     rules: InferenceRules
 
     @classmethod
@@ -53,7 +56,13 @@ class GapSize:
         """
         before, after = mean_squares(evidence, held.before), mean_squares(evidence, held.after)
         lowest = _lowest_squares(evidence, hypothesis, held, rules)
-        return cls(evidence, held, before, after, lowest, rules)
+        unlisted_causes = [c for c in hypothesis.causes if c.effect in UNLISTED and not c.standing]
+        odd = [
+            unlisted(channel, scales, rules)
+            or any(channel.shows(cause.columns).any() for cause in unlisted_causes)
+            for channel, scales in zip(evidence.channels, hypothesis.scales, strict=True)
+        ]
+        return cls(evidence, held, before, after, lowest, np.array(odd), rules)
 
     @cached_property
     def excess(self) -> np.ndarray:
@@ -66,7 +75,7 @@ class GapSize:
         channels = self.evidence.channels
         units = [RESIDUALS[channel.residual][1] for channel in channels]
         shown = np.array([bool(self.held.trace[each.under_test].any()) for each in channels])
-        shown |= not shown.any()
+        shown |= self.odd if shown.any() else True
         largest = int(np.argmax(np.where(shown, self.excess, -1.0)))
         same = np.array([unit == units[largest] for unit in units])
         least = self.rules.posterior.counts * self.excess[largest]

@@ -65,20 +65,56 @@ def dry_friction(signals: Signals) -> np.ndarray:
     Returns:
         [Nm], `(n,)`.
     """
-    angles = np.nan_to_num(signals.position)
-    posture = np.concatenate([np.ones((len(angles), 1)), np.sin(angles), np.cos(angles)], 1)
     friction = signals.subject.coulomb.copy()
     for joint in np.flatnonzero(friction == 0).tolist():
-        residual = signals.residual["motion"][:, joint]
-        known = signals.valid & np.isfinite(residual)
-        own = signals.acceleration[:, joint], signals.rigid[:, joint]
-        beside = np.nan_to_num(np.concatenate([posture, np.stack(own, 1)], 1)[known])
-        both = np.stack([sliding(signals)[known, joint], residual[known]], 1)
-        both -= beside @ np.linalg.lstsq(beside, both, rcond=None)[0]
-        (ways, along), (_, whole) = both.T @ both
-        if ways > 0 and along > 0 and along**2 >= MOST * ways * whole:
-            friction[joint] = along / ways
+        way, _, residual = _beside_posture(signals, joint)
+        friction[joint] = _shown(way[:, None], residual)[0]
     return friction
+
+
+@memoized
+def viscous_friction(signals: Signals) -> np.ndarray:
+    """Viscous friction of each joint: the model's; where it has none, what the residual shows
+    beside `dry_friction`, likewise.
+
+    Args:
+        signals: conditioned log.
+
+    Returns:
+        [Nms/rad], `(n,)`.
+    """
+    friction = signals.subject.viscous.copy()
+    for joint in np.flatnonzero(friction == 0).tolist():
+        *causes, residual = _beside_posture(signals, joint)
+        friction[joint] = _shown(np.stack(causes, 1), residual)[1]
+    return friction
+
+
+@memoized
+def _beside_posture(signals: Signals, joint: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Way of sliding, velocity, and the residual of a joint at known ticks, without functions of
+    posture, load and acceleration `(t,)` each.
+    """
+    angles, residual = np.nan_to_num(signals.position), signals.residual["motion"][:, joint]
+    known = signals.valid & np.isfinite(residual)
+    own = signals.acceleration[:, joint], signals.rigid[:, joint]
+    posture = [np.ones((len(angles), 1)), np.sin(angles), np.cos(angles)]
+    beside = np.nan_to_num(np.concatenate([*posture, np.stack(own, 1)], 1)[known])
+    rows = sliding(signals)[:, joint], np.nan_to_num(signals.velocity[:, joint]), residual
+    left = np.stack(rows, 1)[known]
+    left -= beside @ np.linalg.lstsq(beside, left, rcond=None)[0]
+    return left[:, 0], left[:, 1], left[:, 2]
+
+
+def _shown(causes: np.ndarray, residual: np.ndarray) -> np.ndarray:
+    """Sizes at which functions `(t, k)` explain a residual `(t,)`, at least 0; 0 where they do not
+    explain most of it.
+    """
+    size = np.linalg.lstsq(causes, residual, rcond=None)[0]
+    explained = causes @ size
+    if explained @ explained < MOST * (residual @ residual):
+        return np.zeros(len(size))
+    return np.maximum(size, 0.0)
 
 
 def presliding(signals: Signals) -> np.ndarray:

@@ -9,9 +9,11 @@ from hyperleg_design.gap.inference.rules import InferenceRules
 COUNT = 40
 
 
-def size(before, after, noise, residuals=("motion", "motion"), shown=None, hinge=(True, True)):
+def size(
+    before, after, noise, residuals=("motion", "motion"), shown=None, hinge=(True, True), odd=None
+):
     """Of channels of the same number of samples, whose squares are given; causes show in all, or in
-    those that are `shown`.
+    those that are `shown`, and something unlisted acts in those that are `odd`.
     """
     number = len(residuals) * COUNT
     channels = tuple(
@@ -41,9 +43,9 @@ def size(before, after, noise, residuals=("motion", "motion"), shown=None, hinge
     held = SimpleNamespace(
         before=spread(before), after=spread(after), noise=spread(noise), trace=trace
     )
-    return GapSize(
-        evidence, held, *(np.array(one, float) for one in (before, after, noise)), InferenceRules()
-    )
+    sizes = (np.array(one, float) for one in (before, after, noise))
+    others = np.zeros(len(residuals), bool) if odd is None else np.array(odd)
+    return GapSize(evidence, held, *sizes, others, InferenceRules())
 
 
 def test_the_share_closed_is_that_of_the_root_mean_squares_beyond_noise():
@@ -69,6 +71,16 @@ def test_the_gap_of_causes_is_that_of_the_channels_in_which_they_show():
     assert size(*squares, shown=[True, False]).closed == 1.0
     assert size(*squares, shown=[False, False]).counts.tolist() == [False, True]
     assert size(*squares, shown=[False, False]).closed == 0.0
+
+
+def test_what_something_unlisted_leaves_elsewhere_counts_as_well():
+    squares = [25.0, 400.0], [1.0, 400.0], [1.0, 1.0]
+    found = size(*squares, shown=[True, False], odd=[False, True])
+    assert found.counts.tolist() == [False, True]
+    assert found.closed == 0.0
+    smaller = size([25.0, 9.0], [1.0, 9.0], [1.0, 1.0], shown=[True, False], odd=[False, True])
+    assert smaller.counts.tolist() == [True, True]
+    assert smaller.closed == pytest.approx((np.sqrt(17) - np.sqrt(5)) / (np.sqrt(17) - 1))
 
 
 def test_only_channels_in_the_unit_of_the_largest_excess_count():

@@ -6,6 +6,7 @@ import pytest
 import robots
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.joints.friction import VARIED
 from hyperleg_design.gap.effects.strength import joint_strength
 from hyperleg_design.gap.inference.nuisance import (
     OF_WAY,
@@ -56,8 +57,9 @@ def test_friction_of_which_the_model_tells_nothing_turns_over_once_it_is_calibra
 
 
 def test_friction_that_a_robot_has_varies_by_a_share_of_it_though_the_model_has_none(signals):
-    bare = replace(signals.subject, coulomb=np.zeros(len(signals.subject.joints)))
-    dry = replace(bare, coulomb=np.array([0.7, 0.0]))
+    none = np.zeros(len(signals.subject.joints))
+    bare = replace(signals.subject, coulomb=none, viscous=none)
+    dry = replace(bare, coulomb=np.array([0.7, 0.0]), viscous=np.array([0.3, 0.0]))
     known, unknown = (
         {(e.effect, e.location, e.parameter): e.spread for e in found}
         for found in (
@@ -67,9 +69,17 @@ def test_friction_that_a_robot_has_varies_by_a_share_of_it_though_the_model_has_
     )
     assert known.keys() == unknown.keys()
     more = {name: known[name] - unknown[name] for name in known if known[name] != unknown[name]}
-    share = EFFECTS["coulomb_friction"].model_spread
-    for effect in ("coulomb_friction", "stribeck_friction"):
-        assert more.pop((effect, "hip", 0)) == pytest.approx(share * 0.7)
+    for effect, size in (
+        ("coulomb_friction", 0.7),
+        ("stribeck_friction", 0.7),
+        ("viscous_friction", 0.3),
+    ):
+        usual = EFFECTS[effect].model_spread * size
+        assert more.pop((effect, "hip", 0)) == pytest.approx(VARIED * usual)
+        fault = (
+            EFFECTS[effect].usual_errors(robot, signals.step)["hip"][0] for robot in (dry, bare)
+        )
+        assert next(fault) - next(fault) == pytest.approx(usual)
     assert not more
 
 

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.signals.limit_cycle import PRESLIDING
-from hyperleg_design.gap.signals.sliding import dry_friction, presliding, sliding
+from hyperleg_design.gap.signals.sliding import (
+    dry_friction,
+    presliding,
+    sliding,
+    viscous_friction,
+)
 
 
 class Shown:
@@ -63,25 +68,30 @@ def test_dry_friction_is_told_beside_a_rotor_and_a_load_that_the_model_lacks(fri
     velocity = 1.5 * np.cos(3 * time) + 1.4 * np.cos(7 * time)
     acceleration = -4.5 * np.sin(3 * time) - 9.8 * np.sin(7 * time)
     signals = shown(position)
-    signals.acceleration = acceleration[:, None]
+    signals.velocity, signals.acceleration = velocity[:, None], acceleration[:, None]
     signals.rigid = (2.0 * np.sin(position + 0.3) + 0.1 * acceleration)[:, None]
     signals.valid = np.ones(len(time), bool)
-    signals.subject.coulomb = np.zeros(1)
+    signals.subject.coulomb = signals.subject.viscous = np.zeros(1)
     noise = np.random.default_rng(2).normal(0, 0.1, len(time))
     left = friction * np.sign(velocity) + 0.3 * acceleration + load * np.sin(position) + noise
     signals.residual = {"motion": left[:, None]}
     assert dry_friction(signals)[0] == pytest.approx(friction, rel=0.05)
+    assert viscous_friction(signals)[0] == pytest.approx(0.0, abs=0.08)
+    signals = Shown(**vars(signals))
+    signals.residual = {"motion": left[:, None] + 0.2 * friction * velocity[:, None]}
+    assert viscous_friction(signals)[0] == pytest.approx(0.2 * friction, abs=0.08)
 
 
 def test_a_load_alone_is_no_dry_friction_and_the_friction_of_a_model_is_kept():
     time = np.arange(4000) * 0.005
     signals = shown(0.5 * np.sin(3 * time))
+    signals.velocity = 1.5 * np.cos(3 * time)[:, None]
     signals.acceleration = -4.5 * np.sin(3 * time)[:, None]
     signals.rigid = np.zeros((len(time), 1))
     signals.valid = np.ones(len(time), bool)
     signals.residual = {"motion": 3.0 * np.cos(signals.position)}
-    signals.subject.coulomb = np.zeros(1)
-    assert dry_friction(signals)[0] == 0.0
+    signals.subject.coulomb = signals.subject.viscous = np.zeros(1)
+    assert dry_friction(signals)[0] == viscous_friction(signals)[0] == 0.0
     signals = Shown(**vars(signals))
-    signals.subject.coulomb = np.array([0.7])
-    assert dry_friction(signals)[0] == 0.7
+    signals.subject.coulomb = signals.subject.viscous = np.array([0.7])
+    assert dry_friction(signals)[0] == viscous_friction(signals)[0] == 0.7

@@ -14,6 +14,10 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
 
+VARIED = 2.0
+"""Spread of the nuisance parameter over the usual error of a model's friction [-]: it changes with
+temperature and wear from day to day, and most else of a robot does not (developed)."""
+
 
 class ModelledFriction(JointTorque):
     """Friction that is as well known as the model's: its first parameter is its size."""
@@ -33,12 +37,18 @@ class ModelledFriction(JointTorque):
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
         """A share of the model's friction, and of what the joint is made for."""
+        return self._errors(subject, step, VARIED * self.model_spread)
+
+    @override
+    def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """Likewise, as it is on one day."""
+        return self._errors(subject, step, self.model_spread)
+
+    def _errors(self, subject: Subject, step: float, share: float) -> Mapping[str, np.ndarray]:
         size = np.eye(len(self.parameters))[0]
         usual = super().nuisance_spreads(subject, step).items()
-        own = self.model_spread * self.modelled(subject)
-        return {
-            joint: share * size + least for (joint, least), share in zip(usual, own, strict=True)
-        }
+        own = share * self.modelled(subject)
+        return {joint: part * size + least for (joint, least), part in zip(usual, own, strict=True)}
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
