@@ -1,7 +1,7 @@
 """How large the gap is with the nominal model, with the causes, and without anything but noise.
 
 All three are root mean squares of what cross-validation leaves of the residuals under test, over
-their expected noise, of the channels that count: of those in which the causes or something unlisted
+their expected noise, of the channels that count: of those in which causes or unlisted effects
 show, or of all where there are no causes, those in the unit of the one with the largest excess over
 the noise, as far as their own is not much smaller.
 """
@@ -18,7 +18,7 @@ from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cross_validation import Prediction
 from hyperleg_design.gap.inference.hypotheses.hypothesis import Hypothesis
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.unlisted import makes_noise, unlisted
+from hyperleg_design.gap.inference.unlisted import makes_noise
 from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.signals.signals import RESIDUALS
 
@@ -39,7 +39,7 @@ class GapSize:
     noise: np.ndarray
     """The same that no cause can go below."""
     odd: np.ndarray
-    """Channels in which something unlisted acts `(channels,)` of bool."""
+    """Channels in which an effect that is not listed shows `(channels,)` of bool."""
     rules: InferenceRules
 
     @classmethod
@@ -56,13 +56,12 @@ class GapSize:
         """
         before, after = mean_squares(evidence, held.before), mean_squares(evidence, held.after)
         lowest = _lowest_squares(evidence, hypothesis, held, rules)
-        unlisted_causes = [c for c in hypothesis.causes if c.effect in UNLISTED and not c.standing]
-        odd = [
-            unlisted(channel, scales, rules)
-            or any(channel.shows(cause.columns).any() for cause in unlisted_causes)
-            for channel, scales in zip(evidence.channels, hypothesis.scales, strict=True)
-        ]
-        return cls(evidence, held, before, after, lowest, np.array(odd), rules)
+        odd = np.zeros(len(evidence.channels), bool)
+        for cause in hypothesis.causes:
+            if cause.effect in UNLISTED and not cause.standing:
+                columns = cause.columns
+                odd |= [bool(channel.shows(columns).any()) for channel in evidence.channels]
+        return cls(evidence, held, before, after, lowest, odd, rules)
 
     @cached_property
     def excess(self) -> np.ndarray:

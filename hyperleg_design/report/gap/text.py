@@ -203,10 +203,12 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     Returns:
         The text.
     """
-    gap = diagnosis["gap"]
+    gap, remainder = diagnosis["gap"], diagnosis.get("remainder") or 0.0
     size = f"residuals [{gap['unit']}]: {gap['before']:.4g}"
     lines = [f"verdict: {diagnosis['verdict']}", f"{size}, of which noise {gap['floor']:.4g}"]
     if diagnosis["causes"]:
+        if remainder:
+            lines[0] += " in part"
         low, high = (100 * float(v) for v in gap["closed_interval"])
         lines[1] = (
             f"{size} before, {gap['after']:.4g} with the causes added, noise {gap['floor']:.4g}; "
@@ -226,7 +228,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
         collapsed = together(rows) if title != "rival" else [[row] for row in rows]
         for group in collapsed:
             lines += _cause_lines(title, group)
-    if remainder := diagnosis.get("remainder"):
+    if remainder:
         lines.append(f"  remainder: {100 * remainder:.0f} % of the gap, which no effect explains")
     lines += [
         f"  {shape['location']} {shape['says']}"
@@ -241,7 +243,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     ][:5]
     if places:
         lines.append(f"  where: {', '.join(places)}")
-    if diagnosis["verdict"] == "unknown":
+    if diagnosis["verdict"] == "unknown" or remainder:
         left = [
             shape for shape in diagnosis.get("residual_shape", ()) if shape["shape"] not in APART
         ]
@@ -249,6 +251,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
             f"  left: {shape['shape']} at {shape['location']}: {shape['says']}"
             for shape in left[:3]
         ]
+    if diagnosis["verdict"] == "unknown":
         lines += [f"  {text}" for text in beyond_references(diagnosis)]
     if diagnosis["verdict"] == "none" and (rows := sensitivity_rows(diagnosis)):
         lines.append("  these logs would have shown, nine times in ten, from:")
