@@ -281,6 +281,19 @@ class Effect(ABC):
         places = self.locations(subject) if any(spreads) else ()
         return {place: self._sized(spreads, place, subject) for place in places}
 
+    def session_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """State how far parameters of a healthy robot usually are from what they were in reference
+        logs, which teach what all sessions share.
+
+        Args:
+            subject: the robot.
+            step: of its logs [s].
+
+        Returns:
+            As of `nuisance_spreads`.
+        """
+        return self.nuisance_spreads(subject, step)
+
     def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
         """State how far a healthy robot usually is from its model, also at places where the effect
         has no nuisance parameter; a cause must be larger than that to be a fault.

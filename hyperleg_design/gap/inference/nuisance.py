@@ -105,7 +105,7 @@ def nuisance_parameters(
         calibrated: whether there are reference logs, which show friction that the model lacks.
         rubbing: the robot with the dry friction that its logs show, where the model has less.
     """
-    usual = _Usual(rubbing or subject, step)
+    usual = _Usual(rubbing or subject, step, calibrated)
     parameters: list[NuisanceParameter] = []
     for j, joint in enumerate(subject.joints):
         if subject.coulomb[j] > 0:
@@ -149,11 +149,12 @@ def nuisance_parameters(
 class _Usual:
     """Nuisance parameters that are parameters of effects, by kind and place."""
 
-    def __init__(self, subject: Subject, step: float) -> None:
+    def __init__(self, subject: Subject, step: float, calibrated: bool) -> None:
         self.by_kind: dict[str, list[tuple[str, Mapping[str, np.ndarray]]]] = {}
         for effect in sorted(EFFECTS.values(), key=lambda effect: effect.nuisance_rank):
             own = self.by_kind.setdefault(effect.kind, [])
-            own.append((effect.identifier, effect.nuisance_spreads(subject, step)))
+            spreads = effect.session_spreads if calibrated else effect.nuisance_spreads
+            own.append((effect.identifier, spreads(subject, step)))
 
     def of(self, kind: str) -> list[NuisanceParameter]:
         """List those of all places of a kind, place by place.

@@ -15,7 +15,7 @@ from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
 
 VARIED = 2.0
-"""Spread of the nuisance parameter over the usual error of a model's friction [-]: it changes with
+"""Spread between sessions over the usual error of a model's friction [-]: it changes with
 temperature and wear from day to day, and most else of a robot does not (developed)."""
 
 
@@ -37,12 +37,12 @@ class ModelledFriction(JointTorque):
     @override
     def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
         """A share of the model's friction, and of what the joint is made for."""
-        return self._errors(subject, step, VARIED * self.model_spread)
+        return self._errors(subject, step, self.model_spread)
 
     @override
-    def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        """Likewise, as it is on one day."""
-        return self._errors(subject, step, self.model_spread)
+    def session_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """Likewise, of a larger share."""
+        return self._errors(subject, step, VARIED * self.model_spread)
 
     def _errors(self, subject: Subject, step: float, share: float) -> Mapping[str, np.ndarray]:
         size = np.eye(len(self.parameters))[0]
