@@ -212,8 +212,7 @@ def evidence_of(
         InputError: no log shows a residual.
     """
     subject, healthy = tests[0].subject, (*references, *tests)[0]
-    shown = dry_friction(healthy), viscous_friction(healthy)
-    rubbing = replace(subject, coulomb=shown[0], viscous=shown[1])
+    rubbing = replace(subject, coulomb=dry_friction(healthy), viscous=viscous_friction(healthy))
     errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), rubbing)
     errors.sort(key=lambda error: not error.steady)
     sets = [_set(tests, errors, rules, tested=True)]

@@ -102,8 +102,10 @@ def nuisance_parameters(
     Args:
         subject: the robot.
         step: of its logs [s].
-        calibrated: whether there are reference logs, which show friction that the model lacks.
-        rubbing: the robot with the dry friction that its logs show, where the model has less.
+        calibrated: whether there are reference logs, which show friction that the model lacks, so
+            that spreads are those between sessions.
+        rubbing: the robot with the dry and viscous friction that its logs show, where the model has
+            none.
     """
     usual = _Usual(rubbing or subject, step, calibrated)
     parameters: list[NuisanceParameter] = []

@@ -34,8 +34,8 @@ def memoized(
         if key in own:
             return own[key]
         result = own[key] = function(owner, *rest, **named)
-        if len(own) > MOST:
-            own.pop(next(iter(own)), None)
+        for oldest in tuple(own)[:-MOST]:  # of a copy, as other threads add results meanwhile
+            own.pop(oldest, None)
         return result
 
     return keeping

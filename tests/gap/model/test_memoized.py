@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import gc
 import weakref
+from concurrent.futures import ThreadPoolExecutor
 
-from hyperleg_design.gap.model.memoized import memoized
+from hyperleg_design.gap.model.memoized import MOST, memoized
 
 
 class Owner:
@@ -35,3 +36,23 @@ def test_results_go_with_their_owner():
     del owner
     gc.collect()
     assert seen() is None
+
+
+def test_the_last_results_are_kept_whichever_threads_add_them():
+    calls = []
+
+    @memoized
+    def doubled(owner, one):
+        calls.append(one)
+        return 2 * one
+
+    owner = Owner()
+    numbers = range(4 * MOST)
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(lambda one: doubled(owner, one), numbers)) == [2 * n for n in numbers]
+    doubled(owner, -1)
+    known = len(calls)
+    assert doubled(owner, -1) == -2
+    assert len(calls) == known
+    assert doubled(owner, 0) == 0
+    assert len(calls) == known + 1

@@ -224,10 +224,8 @@ class HypothesisFit:
         samples = self.evidence.samples if everywhere else self.evidence.tests
         if not others:
             return samples
-        kind, wanted = (
-            (everywhere, effect.by_load),
-            (tuple(c[:3] for c in others), values_of(others)),
-        )
+        kind = everywhere, effect.by_load
+        wanted = tuple(c[:3] for c in others), values_of(others)
         known, left = self._left.get(kind, (None, samples))
         if known != wanted:
             left = beside(samples, effect, others, len(self.evidence.signals))
