@@ -22,7 +22,7 @@ class Variants(Printing):
     designs: str = "toe"
     """Designs, of which the held-out ones are evaluated: shipped name or YAML file."""
     protocol: str = "walk"
-    """Walk protocol: shipped name or YAML file."""
+    """Walk or T-test: shipped name or YAML file."""
     out: Path
     """Folder to write tables to, and each held-out design (0/design.yaml and so on)."""
     finetune: Annotated[int, AtLeast(0)] = 0
@@ -62,16 +62,8 @@ class Variants(Printing):
             comparisons = check.comparisons.astype(object).where(check.comparisons.notna(), None)
             emit({"folder": folder, "rows": rows, "comparisons": comparisons.to_dict("records")})
             return
-        shown = [
-            "policy",
-            "design",
-            "trained",
-            "arrived",
-            "fell",
-            "cost_of_transport",
-            "steady_speed",
-        ]
-        print(check.rows[shown].to_string(index=False, float_format="{:.3f}".format))
+        drawn = [*designs.leaves, "trials"]
+        print(check.rows.drop(columns=drawn).to_string(index=False, float_format="{:.3f}".format))
         if len(check.comparisons):
             print(check.comparisons.to_string(index=False, float_format="{:.3f}".format))
         print(f"tables in {folder}")

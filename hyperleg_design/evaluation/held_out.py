@@ -15,6 +15,7 @@ import pandas as pd
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.evaluate import evaluate, evaluate_designs
 from hyperleg_design.evaluation.policy import load_policy
+from hyperleg_design.evaluation.protocol import TTestProtocol
 from hyperleg_design.evaluation.rollout import ARRIVED, FELL
 from hyperleg_design.simulation.design_spread import load_design_spread
 
@@ -25,7 +26,9 @@ if TYPE_CHECKING:
 
 EACH = "{}"
 """Stands for the number of a design in the path of policies that have one training each."""
-COST, SPEED = "cost_of_transport", "steady_speed"
+COST, TIME = "cost_of_transport", "time"
+WALKED, RUN = (COST, "steady_speed"), (TIME, COST, "mean_deviation")
+"""Measures of walks and of T-tests that are reported; policies are ranked by the first one."""
 
 
 @dataclass(frozen=True)
@@ -46,12 +49,14 @@ class HeldOutCheck:
 
     rows: pd.DataFrame
     """A row for each policy and design: `policy`, `design` (its number), `trained`, `arrived`,
-    `fell`, `trials`, means of the trials that arrived (`cost_of_transport`, `steady_speed` [m/s]),
-    and the drawn leaves by path."""
+    `fell`, `trials`, means of the trials that arrived (of walks `cost_of_transport` and
+    `steady_speed` [m/s]; of T-tests `time` [s], `cost_of_transport` and `mean_deviation` [m]), and
+    the drawn leaves by path."""
     comparisons: pd.DataFrame
     """A row for each other policy against the first: `cost_ratio` (first over other, median over
-    the designs on which both arrive), `rank_correlation` (Spearman's, of their costs over these
-    designs), `designs` (how many those are), `more_falls` (share of trials, first less other)."""
+    the designs on which both arrive), of T-tests `time_ratio` as well, `rank_correlation`
+    (Spearman's over these designs, of their costs in walks and of their times in T-tests),
+    `designs` (how many those are), `more_falls` (share of trials, first less other)."""
 
 
 def held_out_designs(
@@ -88,7 +93,7 @@ def check_held_out(
         policies: ONNX files or shipped names; the first is judged, the others are what it is
             compared with. A path with `{}` names one policy for each design, by its number.
         designs: of `held_out_designs`.
-        protocol: of walks, as `evaluate` takes it.
+        protocol: as `evaluate` takes it.
         threads: of the simulation; the result does not depend on it.
 
     Returns:
@@ -147,12 +152,20 @@ def compared(first: pd.DataFrame, other: pd.DataFrame) -> dict[str, float]:
     Returns:
         As the columns of `HeldOutCheck.comparisons`; NaN where fewer than two designs count.
     """
-    own, theirs = first[COST].to_numpy(float), other[COST].to_numpy(float)
+    ranked = TIME if TIME in first else COST
+    own, theirs = first[ranked].to_numpy(float), other[ranked].to_numpy(float)
     both = np.isfinite(own) & np.isfinite(theirs)
     enough = int(both.sum()) > 1
+    ratios = {
+        f"{name}_ratio": float(np.median((first[column] / other[column]).to_numpy(float)[both]))
+        if enough
+        else float("nan")
+        for name, column in (("cost", COST), ("time", TIME))
+        if column in first
+    }
     ranks = (pd.Series(values[both]) for values in (own, theirs))
     return {
-        "cost_ratio": float(np.median(own[both] / theirs[both])) if enough else float("nan"),
+        **ratios,
         "rank_correlation": float(next(ranks).corr(next(ranks), method="spearman"))
         if enough
         else float("nan"),
@@ -173,7 +186,7 @@ def _row(result: Evaluation) -> dict[str, Any]:
         "fell": result.outcomes.count(FELL),
         "trials": len(arrived),
     }
-    for name in (COST, SPEED):
+    for name in RUN if isinstance(result.protocol, TTestProtocol) else WALKED:
         values = result.values(name)[arrived]
         values = values[np.isfinite(values)]
         row[name] = float(values.mean()) if len(values) else float("nan")

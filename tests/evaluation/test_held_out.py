@@ -8,7 +8,7 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.held_out import check_held_out, compared, held_out_designs
 from hyperleg_design.evaluation.policy import load_policy
-from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
+from hyperleg_design.evaluation.protocol import Steady, TTestProtocol, WalkProtocol
 from hyperleg_design.evaluation.training_fit import training_fit
 from hyperleg_design.simulation.design_observation import DesignRanges, Range
 from hyperleg_design.simulation.design_spread import (
@@ -34,6 +34,15 @@ def test_ratio_ranks_and_falls_by_hand() -> None:
     assert found["more_falls"] == pytest.approx((11 - 12) / 50)
 
 
+def test_t_tests_are_ranked_by_their_times() -> None:
+    first = rows([0.4, 0.5, 0.6], [0, 0, 1]).assign(time=[16.0, 18.0, 20.0])
+    other = rows([0.5, 0.5, 0.5], [0, 0, 0]).assign(time=[16.0, 15.0, 10.0])
+    found = compared(first, other)
+    assert found["time_ratio"] == pytest.approx(1.2)
+    assert found["cost_ratio"] == pytest.approx(1.0)
+    assert found["rank_correlation"] == pytest.approx(-1.0)
+
+
 def test_one_common_design_gives_no_numbers() -> None:
     found = compared(rows([0.4, np.nan], [0, 0]), rows([0.4, 0.5], [0, 0]))
     assert np.isnan(found["cost_ratio"])
@@ -52,6 +61,21 @@ def test_policies_are_compared_on_the_same_designs() -> None:
     assert set(check.rows["trials"]) == {2}
     assert check.comparisons["more_falls"].tolist() == [0.0]
     np.testing.assert_array_less(check.rows["toe.mass"], 0.4)
+
+
+def test_t_tests_report_times_and_deviations() -> None:
+    spread = DesignSpread(
+        ranges=DesignRanges({"toe.mass": Range(0.1, 0.4)}), pool=4, held_out=2, held_out_seed=9
+    )
+    ahead = {"A": (0.0, 0.0), "B": (1.5, 0.0)}
+    near = TTestProtocol(trials=1, points=ahead, order=("A", "B"), time_limit=5.0)
+    check = check_held_out(
+        ["t_test_free-toe-0"], held_out_designs(["t_test_free-toe-0"], spread), near, threads=1
+    )
+    assert check.rows["arrived"].tolist() == [1, 1]
+    assert (check.rows["time"] < 5).all()
+    assert (check.rows["mean_deviation"] < 0.8).all()
+    assert "steady_speed" not in check.rows
 
 
 @pytest.mark.parametrize("policies", [[], ["runs/{}/policy.onnx"]])

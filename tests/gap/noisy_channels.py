@@ -14,7 +14,13 @@ def noisy_channel(referenced=True, **fields):
     """A channel with `BANDS` bands under test and, with references, as many of these."""
     bands = np.arange(BANDS)
     alike = bands + BANDS if referenced else np.full(BANDS, -1)
-    own = SimpleNamespace(referenced=referenced, bands_tested=bands, bands_alike=alike, **fields)
+    own = SimpleNamespace(
+        referenced=referenced,
+        bands_tested=bands,
+        bands_alike=alike,
+        numbers=np.full(2 * BANDS, 50.0),
+        **fields,
+    )
     for name in ("usual_noise", "noisy"):
         setattr(own, name, getattr(Channel, name).__get__(own))
     return own

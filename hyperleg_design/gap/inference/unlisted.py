@@ -64,3 +64,25 @@ def excess_noise(channel: Channel, scales: Scales, rules: InferenceRules) -> flo
         return 1.0
     over = scales.noise[channel.bands_tested] / channel.usual_noise(scales.noise, rules)
     return float(np.sqrt(over.max()))
+
+
+def scatter(channel: Channel, scales: Scales, rules: InferenceRules) -> float:
+    """Compute how many times as much a channel scatters as in the references, over all bands.
+
+    Args:
+        channel: of the evidence.
+        scales: that were fitted to it.
+        rules: of the inference.
+
+    Returns:
+        The ratio of standard deviations; 1 where it is within the deviation of a healthy robot's,
+        or where there are no references.
+    """
+    known = channel.bands_alike >= 0
+    if not known.any():
+        return 1.0
+    numbers = channel.numbers[channel.bands_tested][known]
+    here = numbers @ scales.noise[channel.bands_tested][known]
+    before = numbers @ channel.usual_noise(scales.noise, rules)[known]
+    over = float(here / before)
+    return float(np.sqrt(over)) if np.log(over) > rules.noise.spread else 1.0

@@ -17,10 +17,12 @@ from hyperleg_design.gap.inference.detectors.ringing import ringing
 from hyperleg_design.gap.inference.gap_size import GapSize
 from hyperleg_design.gap.inference.posterior import Posterior, expanded
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.unlisted import excess_noise
+from hyperleg_design.gap.inference.unlisted import excess_noise, scatter
 from hyperleg_design.gap.results.diagnosis import residual_shape
 from hyperleg_design.gap.signals.signals import Signals
 
+SCATTERS = "scatter"
+"""Name of noise that is larger than in the references, in `Diagnosis.residual_shape`."""
 MOST_CHANNELS = 3
 """Channels that are named where no listed effect says why they are larger or noisier."""
 
@@ -88,7 +90,7 @@ class Unexplained:
         for cause, text in self.unlisted_causes:
             if not cause.standing:
                 shapes.append(residual_shape(cause.effect, cause.location, text, remainder))
-        return (*shapes, *self._larger(), *self._noisier())
+        return (*shapes, *self._larger(), *self._noisier(), *self._scattering())
 
     def _larger(self) -> list[dict[str, Any]]:
         """Channels of which the causes leave more than a healthy robot does."""
@@ -126,6 +128,28 @@ class Unexplained:
                 f"effect: look for play, a loose part, something that pushes, or a disturbed signal"
             )
             shapes.append(residual_shape("noise", channel.name, text, 0.0))
+        return shapes
+
+    def _scattering(self) -> list[dict[str, Any]]:
+        """Channels that scatter more than in the references, where that is all there is to say."""
+        if self.posterior.verdict != "none":
+            return []
+        times = [
+            scatter(channel, scales, self.rules)
+            for channel, scales in zip(
+                self.evidence.channels, self.posterior.hypothesis.scales, strict=True
+            )
+        ]
+        shapes = []
+        for place in np.argsort([-t for t in times], kind="stable").tolist()[:MOST_CHANNELS]:
+            if times[place] > 1:
+                channel = self.evidence.channels[place]
+                text = (
+                    f"the {channel.residual} residual of {channel.name} scatters "
+                    f"{times[place]:.2g} times as much as in the references, in a way that follows "
+                    f"no listed effect, as a healthy robot's does now and then"
+                )
+                shapes.append(residual_shape(SCATTERS, channel.name, text, 0.0))
         return shapes
 
 

@@ -243,7 +243,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     ][:5]
     if places:
         lines.append(f"  where: {', '.join(places)}")
-    if diagnosis["verdict"] == "unknown" or remainder:
+    if diagnosis["verdict"] in ("unknown", "none") or remainder:
         left = [
             shape for shape in diagnosis.get("residual_shape", ()) if shape["shape"] not in APART
         ]

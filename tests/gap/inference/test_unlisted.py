@@ -3,7 +3,7 @@ import pytest
 from noisy_channels import noisy_channel, noisy_scales
 
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.unlisted import excess_noise, makes_noise, unlisted
+from hyperleg_design.gap.inference.unlisted import excess_noise, makes_noise, scatter, unlisted
 
 RULES = InferenceRules()
 
@@ -30,3 +30,10 @@ def test_noise_is_unlisted_where_it_is_far_above_that_of_the_references(healthy)
     assert makes_noise(noisy_channel(), loud, RULES)
     assert unlisted(noisy_channel(), loud, RULES)
     assert excess_noise(noisy_channel(), loud, RULES) == pytest.approx(10.0)
+
+
+def test_scatter_is_told_from_one_deviation_of_a_healthy_robots_on():
+    assert scatter(noisy_channel(), noisy_scales(noise=4.0), RULES) == pytest.approx(2.0)
+    within = 0.99 * np.exp(RULES.noise.spread)
+    assert scatter(noisy_channel(), noisy_scales(noise=within), RULES) == 1
+    assert scatter(noisy_channel(referenced=False), noisy_scales(noise=4.0), RULES) == 1

@@ -8,7 +8,7 @@ from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline.unexplained import Unexplained
 
 
-def unexplained(noises, after, remainder=1.0, cycles=((), ())):
+def unexplained(noises, after, remainder=1.0, cycles=((), ()), verdict="unknown"):
     """Of channels with some noise over that of the references, and mean squares that are left."""
     channels = tuple(noisy_channel(name=name, residual="motion") for name in noises)
     scales = [noisy_scales(noise=noise) for noise in noises.values()]
@@ -33,6 +33,7 @@ def unexplained(noises, after, remainder=1.0, cycles=((), ())):
             hypothesis=SimpleNamespace(scales=tuple(scales), candidates=(), causes=()),
             odd=(),
             remainder=remainder,
+            verdict=verdict,
         ),
         SimpleNamespace(after=np.array(after), noise=np.ones(len(noises))),
         InferenceRules(),
@@ -51,6 +52,18 @@ def test_channels_that_scatter_are_named_the_noisiest_first():
 
 def test_less_noise_than_before_is_nothing_to_explain():
     assert unexplained({"hip": 1e-4, "knee": 1.0}, [1.0, 1.0]).shapes() == ()
+
+
+def test_an_answer_of_none_names_channels_that_scatter_more_than_in_the_references():
+    noises = {"hip": 1.0, "knee": 2.25, "ankle": 4.0}
+    quiet = [1.0, 1.0, 1.0]
+    shapes = unexplained(noises, quiet, remainder=0.0, verdict="none").shapes()
+    assert [(shape["shape"], shape["location"]) for shape in shapes] == [
+        ("scatter", "ankle"),
+        ("scatter", "knee"),
+    ]
+    assert "2 times as much as in the references" in shapes[0]["says"]
+    assert unexplained(noises, quiet, remainder=0.0).shapes() == ()
 
 
 def test_channels_that_are_left_larger_are_named_with_their_shares():
