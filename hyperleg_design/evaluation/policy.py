@@ -1,18 +1,7 @@
 """Policies: plain callables from observations `(n, size)` to actions `(n, J)`, or ONNX files that
 say what they are.
 
-An ONNX file has the input `observation` `(n, size)` and the output `action` `(n, J)`, single
-precision, its normaliser inside the graph, and metadata (`metadata_props`; JSON where not plain
-text):
-
-| key | holds |
-|---|---|
-| `format` | `hyperleg-policy-1` |
-| `columns` | names of the numbers of the observation |
-| `joints` | names of the numbers of the action |
-| `task`, `design` | resolved, as `task_from_mapping` and `design_from_mapping` take them |
-| `variant`, `seed`, `steps`, `deviations`, `command`, `commit`, `versions`, `preset` | how it was
-made; shown, not needed |
+`simulation/policy_file.py` lists what such a file holds.
 
 A callable with a method `reset(n)` is told before each evaluation that n trials begin.
 """
@@ -32,6 +21,7 @@ from hyperleg_design.evaluation.shipped import find_policy
 from hyperleg_design.reading import short_name
 from hyperleg_design.robot.load import robot_from_mapping
 from hyperleg_design.simulation.layout import layout_of
+from hyperleg_design.simulation.policy_file import INPUT, OUTPUT, POLICY_FORMAT
 from hyperleg_design.simulation.tasks import task_from_mapping
 
 if TYPE_CHECKING:
@@ -39,9 +29,6 @@ if TYPE_CHECKING:
     from hyperleg_design.simulation.environment import Environment
     from hyperleg_design.simulation.tasks import Task
 
-FORMAT = "hyperleg-policy-1"
-"""Name and version of the metadata."""
-INPUT, OUTPUT = "observation", "action"
 NEEDED = ("columns", "joints", "task", "design")
 """Metadata without which a file is not evaluated."""
 
@@ -254,10 +241,10 @@ def _session(content: bytes, where: str) -> Any:
 
 def _metadata(session: Any, where: str) -> dict[str, Any]:
     raw = dict(session.get_modelmeta().custom_metadata_map)
-    if raw.get("format") != FORMAT:
+    if raw.get("format") != POLICY_FORMAT:
         remedy = (
-            f"expects {FORMAT}; export with `hyperleg train`, or wrap a foreign network in a "
-            f"callable"
+            f"expects {POLICY_FORMAT}; export with `hyperleg train`, or wrap a foreign network in "
+            f"a callable"
         )
         raise InputError(where, "format", raw.get("format"), remedy)
     metadata: dict[str, Any] = {}

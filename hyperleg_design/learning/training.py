@@ -15,7 +15,7 @@ from tensordict import TensorDict
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.learning.design_sampler import DesignSampler
 from hyperleg_design.learning.learner.algorithm import IterationPPO, as_tensors, make_algorithm
-from hyperleg_design.learning.policies.export import CRITIC_FORMAT, export_policy
+from hyperleg_design.learning.policies.export import export_policy
 from hyperleg_design.learning.policies.policy_metadata import policy_metadata
 from hyperleg_design.learning.policies.start_policy import StartPolicy
 from hyperleg_design.learning.policies.warm_start import (
@@ -42,6 +42,7 @@ from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.simulation.alteration import Alterations
 from hyperleg_design.simulation.design_spread import DesignSpread
 from hyperleg_design.simulation.environment import Environment
+from hyperleg_design.simulation.policy_file import CRITIC_FORMAT
 from hyperleg_design.simulation.stepping.snapshot import put_snapshot, take_snapshot
 from hyperleg_design.simulation.tasks import Task
 from hyperleg_design.writing import write_json

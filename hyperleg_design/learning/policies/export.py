@@ -1,17 +1,7 @@
 """Policies as ONNX files that say by themselves what they are: normaliser, layout, design, task,
 seed and commit inside.
 
-Input `observation` `(n, size)`, output `action` `(n, J)`, both single precision. Metadata
-(`metadata_props`), JSON texts where not plain:
-
-| key | holds |
-|---|---|
-| `format` | `hyperleg-policy-1` |
-| `columns` | names of the numbers of the observation |
-| `joints` | names of the numbers of the action |
-| `task`, `design`, `preset` | resolved, as their YAML readers take them |
-| `design_ranges` | ranges of the designs that it was trained on, where it observes its design |
-| `variant`, `seed`, `steps`, `command`, `commit`, `versions` | how it was made |
+The format is that of `simulation/policy_file.py`.
 """
 
 from __future__ import annotations
@@ -27,22 +17,19 @@ import torch
 
 from hyperleg_design.errors import OutputError
 from hyperleg_design.learning.learner.modulation import ModulatedLayers, plain_layers
+from hyperleg_design.simulation.policy_file import INPUT, OUTPUT, POLICY_FORMAT
 from hyperleg_design.writing import write_bytes
 
 if TYPE_CHECKING:
     from rsl_rl.models import MLPModel
 
-FORMAT = "hyperleg-policy-1"
-"""Name and version of the metadata of a policy."""
-CRITIC_FORMAT = "hyperleg-critic-1"
-"""Name and version of the metadata of a critic."""
 TOLERANCE = 1e-5
 """Largest difference between torch and ONNX Runtime, over 1 + the largest of each output."""
 OPSET = 18
 
 
 def export_policy(
-    path: Path, actor: MLPModel, metadata: dict[str, Any], form: str = FORMAT
+    path: Path, actor: MLPModel, metadata: dict[str, Any], form: str = POLICY_FORMAT
 ) -> Path:
     """Write the deterministic policy of an actor, or a critic, and check it against torch.
 
@@ -50,7 +37,7 @@ def export_policy(
         path: of the file.
         actor: the network with its normaliser.
         metadata: what goes into the file besides `format`; texts as they are, the rest as JSON.
-        form: the file's format, `FORMAT` or `CRITIC_FORMAT`.
+        form: the file's format, `POLICY_FORMAT` or `CRITIC_FORMAT`.
 
     Returns:
         The path of the file.
@@ -95,7 +82,7 @@ def largest_difference(content: bytes, actor: MLPModel, count: int = 64) -> floa
     )
     with torch.inference_mode():
         expected = actor.mlp(actor.obs_normalizer(torch.from_numpy(observation))).numpy()
-    (action,) = session.run(["action"], {"observation": observation})
+    (action,) = session.run([OUTPUT], {INPUT: observation})
     return float(np.max(np.abs(action - expected) / (1.0 + np.abs(expected).max(0))))
 
 
@@ -106,7 +93,7 @@ def _as_onnx(actor: MLPModel, metadata: dict[str, Any]) -> bytes:
 
     nodes: list[Any] = []
     weights: list[Any] = []
-    name, outputs = "observation", 0
+    name, outputs = INPUT, 0
 
     def add(kind: str, inputs: list[str], **attributes: Any) -> str:
         output = f"{kind.lower()}_{len(nodes)}"
@@ -149,12 +136,12 @@ def _as_onnx(actor: MLPModel, metadata: dict[str, Any]) -> bytes:
                 hidden += 1
         else:
             name = add({"ELU": "Elu", "ReLU": "Relu", "Tanh": "Tanh"}[type(layer).__name__], [name])
-    nodes[-1].output[0] = "action"
+    nodes[-1].output[0] = OUTPUT
     graph = helper.make_graph(
         nodes,
         "policy",
-        [helper.make_tensor_value_info("observation", TensorProto.FLOAT, ["n", actor.obs_dim])],
-        [helper.make_tensor_value_info("action", TensorProto.FLOAT, ["n", outputs])],
+        [helper.make_tensor_value_info(INPUT, TensorProto.FLOAT, ["n", actor.obs_dim])],
+        [helper.make_tensor_value_info(OUTPUT, TensorProto.FLOAT, ["n", outputs])],
         weights,
     )
     model = helper.make_model(

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
-from hyperleg_design.learning.policies.export import CRITIC_FORMAT, FORMAT
 from hyperleg_design.learning.policies.fold_design import fold_design
 from hyperleg_design.learning.records.status import CRITIC, POLICY
 from hyperleg_design.simulation.design_observation import RANGES, design_ranges
+from hyperleg_design.simulation.policy_file import CRITIC_FORMAT, POLICY_FORMAT
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.parameters.described import RobotDesign
@@ -106,7 +106,7 @@ def read_start(path: str | Path, design: RobotDesign | None = None) -> StartPoli
             many designs, or for a design outside of its ranges.
     """
     path = Path(path)
-    metadata, network, digest, modulation = _read_network(path, FORMAT)
+    metadata, network, digest, modulation = _read_network(path, POLICY_FORMAT)
     numbers: dict[str, float] = {}
     if RANGES in metadata:
         where = f"{path.parent.name}/{path.name}"

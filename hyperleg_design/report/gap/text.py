@@ -267,9 +267,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
 
 
 def _cause_lines(title: str, group: Sequence[Mapping[str, Any]]) -> list[str]:
-    """One line for a cause, or for an effect at several places, and their names where the line only
-    counts them.
-    """
+    """One line for a cause; for an effect at several places another one with the size at each."""
     words = ", ".join(
         span.words
         or f"{span.name} {span_text(span.least, span.most, 4, '..')} {span.unit} "
@@ -285,8 +283,16 @@ def _cause_lines(title: str, group: Sequence[Mapping[str, Any]]) -> list[str]:
     probability = min(float(row["probability"]) for row in group)
     where = places(group)
     line = f"  {title} {group[0]['effect']} at {where}: p {probability:.2f}{closes}; {words}"
-    names = ", ".join(str(row["location"]) for row in group)
-    return [line] if where == names else [line, f"    at {names}"]
+    if len(group) == 1:
+        return [line]
+    # the first parameter is the size; its value at each place
+    values = [next(iter(row["parameters"].values())) for row in group]
+    each = (
+        f"{row['location']} {float(value['value']):.4g}"
+        for row, value in zip(group, values, strict=True)
+    )
+    unit = f" {values[0]['unit']}" if values[0]["unit"] else ""
+    return [line, f"    {', '.join(each)}{unit}"]
 
 
 def _closed(cause: Mapping[str, Any]) -> float:

@@ -16,6 +16,7 @@ pytest.importorskip("rsl_rl")
 from hyperleg_design.learning.learner.algorithm import as_tensors, make_network  # noqa: E402
 from hyperleg_design.learning.policies import export  # noqa: E402
 from hyperleg_design.learning.preset import Network  # noqa: E402
+from hyperleg_design.simulation.policy_file import POLICY_FORMAT  # noqa: E402
 
 
 def actor(
@@ -56,7 +57,7 @@ def test_onnx_runtime_gives_what_rsl_rl_gives(
         (action,) = session.run(["action"], {"observation": values[:count]})
         np.testing.assert_allclose(action, expected, rtol=1e-5, atol=2e-5)
     metadata = session.get_modelmeta().custom_metadata_map
-    assert metadata["format"] == export.FORMAT
+    assert metadata["format"] == POLICY_FORMAT
     assert metadata["seed"] == "3"
     assert json.loads(metadata["columns"]) == ["a", "b"]
 

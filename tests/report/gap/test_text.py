@@ -125,7 +125,7 @@ def test_an_answer_states_units_likely_rivals_and_the_experiment_as_a_sentence()
     )
 
 
-def test_one_effect_at_many_places_is_one_line_with_its_places():
+def test_one_effect_at_many_places_is_one_line_with_its_size_at_each():
     (cause,) = diagnosis()["causes"]
     scales = {
         f"m{i}": {"value": 0.8 + i / 1000, "low": 0.7, "high": 0.9, "unit": ""} for i in range(6)
@@ -139,7 +139,7 @@ def test_one_effect_at_many_places_is_one_line_with_its_places():
         "  cause torque_constant at 6 motors: p 0.90, closes 20 % each; "
         "scale 0.8 .. 0.805 (0.7 .. 0.9)"
     )
-    assert lines[place + 1] == "    at m0, m1, m2, m3, m4, m5"
+    assert lines[place + 1] == "    m0 0.8, m1 0.801, m2 0.802, m3 0.803, m4 0.804, m5 0.805"
     two = diagnosis_text(diagnosis(causes=causes[:2]))
     assert two.count("  cause torque_constant at") == 2
 
