@@ -3,21 +3,26 @@ checked on the other.
 
 | | first | second |
 |---|---|---|
-| integrator | semi-implicit Euler, 0.25 ms | drift-kick-drift, 0.2 ms, accelerations at the middle
-| | friction | LuGre bristles | gears one to one: Coulomb and Stribeck with exact sticking, at the
-rotor; coupled: Dahl, at the joints | | drive | first-order torque loop, clipped by the envelope |
-winding with inductance under a voltage limit, back-EMF fed forward | | control | filtered speed of
-the joint | differences of an encoder on the rotor | | transmission | linear belt | belt that
-stiffens |
+| integrator | semi-implicit Euler, 0.25 ms | drift, kick in the middle, drift, 0.2 ms |
+| friction | LuGre bristles | exact sticking at the rotors; at coupled joints Dahl's |
+| drive | first-order torque loop in an envelope | winding with inductance, voltage limit |
+| control | filtered speed of the joint | differences of an encoder on the rotor |
+| transmission | linear belt | belt that stiffens |
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
+from hyperleg_design.validation.blind.plants.parts import (
+    DelayLine,
+    HostTargets,
+    Ripple,
+    UnlistedForces,
+    stacked,
+)
 from hyperleg_design.validation.blind.plants.plant import (
     RigPlant,
     Trace,
@@ -41,7 +46,8 @@ PRESLIDING = 8e-4
 """Angle over which Dahl's friction builds up [rad]."""
 DIFFERENCED = 1
 """Control ticks over which the rotor's encoder is differenced."""
-_HISTORY = 64
+CONTROL = STEP * CONTROL_STEPS
+"""Between ticks of the controllers [s]."""
 
 
 def simulate_other(
@@ -61,216 +67,262 @@ def simulate_other(
     Returns:
         One trace a rig.
     """
-    import pinocchio as pin
-
     b, ticks, n = targets.shape
-    m = plants[0].rotor_inertia.size
-    coupled = n != m or bool(np.any(plants[0].declared - np.diag(np.diag(plants[0].declared))))
-
-    def of(name: str) -> Any:
-        return np.stack([np.asarray(getattr(p, name), float) for p in plants])
-
-    h, control = STEP, STEP * CONTROL_STEPS
-    hold, lead = round(1.0 / (rate * control)), round(SETTLING / control)
+    hold, lead = round(1.0 / (rate * CONTROL)), round(SETTLING / CONTROL)
     count = ticks * hold
-    matrix, declared = of("joint_from_motor"), of("declared")
-    transposed = np.ascontiguousarray(np.swapaxes(matrix, 1, 2))
-    allot = np.ascontiguousarray(np.stack([np.linalg.pinv(p.declared).T for p in plants]))
-    inertia = of("rotor_inertia")
-    stiff = BELT_STIFFNESS * of("belt_stiffness")
-    damp = BELT_DAMPING * of("belt_damping")
-    play = of("backlash") / 2
-    soft_limit = STIFFENING * np.abs(matrix).max(1)
-    mobility = np.stack(
-        [
-            1 / i + np.einsum("im,ij,jm->m", k, inverse_inertia(p), k)
-            for p, k, i in zip(plants, matrix, inertia, strict=True)
-        ]
-    )
-    # Belts too stiff for the step get the stiffest that it carries: they stay rigid to the eye of a
-    # log.
-    stiff = np.minimum(stiff, (0.45 / h) ** 2 / mobility)
-    damp = np.minimum(damp, 0.25 / (h * mobility))
-    coulomb = of("coulomb")
-    static = of("static")
-    stribeck = of("stribeck_speed")
-    viscous = of("viscous")
-    load = of("load_friction")
-    if not coupled:  # gear friction acts before the gear
-        gear = np.abs(np.diagonal(matrix, axis1=1, axis2=2))
-        for values in (coulomb, static, viscous):
-            values[:, :m] += values[:, m:] / (gear if values is not viscous else gear**2)
-            values[:, m:] = 0
-        load_at = load[:, :m] + load[:, m:]
-        stribeck[:, :m] = np.where(load[:, m:] > 0, stribeck[:, :m], stribeck[:, m:] * gear)
-        load = np.concatenate([load_at, np.zeros((b, n))], -1)
-    at_joints = bool(
-        coulomb[:, m:].any()
-        or static[:, m:].any()
-        or viscous[:, m:].any()
-        or load[:, m:].any()
-        or of("patch").any()
-    )
-    spring, spring_rest, rest = of("spring"), of("spring_rest"), of("rest")
-    cogging = of("cogging")
-    order = of("cogging_order")
-    phase = of("cogging_phase")
-    ripple = of("ripple")
-    scale = of("torque_scale")
-    derating = of("derating")
-    peak = of("peak_torque")
-    stall = of("stall_torque")
-    droop = stall / of("no_load_speed")
-    nominal = of("voltage")[:, None]
-    supply = of("supply")[:, None]
-    resistance = of("supply_resistance")[:, None]
-    heat = of("power_constant")
-    thermal_resistance = of("thermal_resistance")
-    thermal_time = of("thermal_time")
-    temperature = of("start_temperature")
-    late = of("delay") / control
-    whole = np.floor(late).astype(int)
-    part = late - whole
-    follow = 1.0 / np.maximum(of("lag"), 2 * h)
-    kp, kd = of("stiffness"), of("damping")
-    offset, drift, eccentricity = of("offset"), of("drift"), of("eccentricity")
-    ratio = np.abs(declared).max(1)
-    counts = of("resolution").min(-1, keepdims=True) * ratio / np.where(ratio > 1, 12, 2)
-    patch, patch_middle, hysteresis = of("patch"), of("patch_middle"), of("hysteresis")
-    push = of("push")
-    beat = of("push_frequency")[:, None]
-    hardening = of("hardening")
-    coupling = of("coupling")
-    drag = of("drag")
-    from_rotor = np.ascontiguousarray(np.linalg.pinv(declared))  # (b, m, n): q^T = theta^T pinv(M)
-    loss = of("loss")
-    dice = [np.random.default_rng([seed, 1]) for seed in seeds]
-    silent = np.zeros(b, int)
-    models, datas = [p.model for p in plants], [p.model.createData() for p in plants]
-
-    q, qd = targets[:, 0] - offset, np.zeros((b, n))
-    rotor = (q[:, None] @ matrix)[:, 0]
-    spin = np.zeros((b, m))
-    torque = np.zeros((b, m))
-    wanted = np.zeros((b, m))
-    given = np.zeros((b, m))
-    held, memory = np.zeros((b, n)), np.zeros((b, n))
-    history, angles = np.zeros((_HISTORY, b, m)), None
-    seen = np.zeros((DIFFERENCED + 1, b, n))
-    lines, columns = np.arange(b)[:, None], np.arange(m)[None]
-    bus = np.broadcast_to(supply, (b, 1)).copy()
-    recorded = {name: np.empty((count, b, width)) for name, width in columns_of(n, m).items()}
-    joint_pull = np.zeros((b, n))
+    host, rigs = HostTargets(targets, hold), _Rigs(plants, targets[:, 0], seeds)
+    columns = columns_of(n, plants[0].rotor_inertia.size)
+    recorded = {name: np.empty((count, b, width)) for name, width in columns.items()}
     for tick in range(-lead, count):
-        row, within = divmod(max(tick, 0), hold)
-        target = targets[:, row] + (targets[:, min(row + 1, ticks - 1)] - targets[:, row]) * (
-            within / hold
-        )
-        angles = (np.round(rotor / counts) * counts)[:, None]
-        reading = (angles @ from_rotor)[:, 0]
-        shown = (
-            reading + offset + eccentricity * np.sin(3 * reading) + drift * max(tick * control, 0.0)
-        )
-        if tick == -lead:
-            seen[:] = shown
-        place = tick % (DIFFERENCED + 1)
-        speed = (shown - seen[(tick + 1) % (DIFFERENCED + 1)]) / (DIFFERENCED * control)
-        seen[place] = shown
-        fresh = ((kp * (target - shown) - kd * speed)[:, None] @ allot)[:, 0]
-        slot = tick % _HISTORY
-        for i in np.flatnonzero(loss):
-            if silent[i] == 0 and dice[i].random() < loss[i] * control / (0.04 * (1 - loss[i])):
-                silent[i] = 1 + int(dice[i].exponential(0.04) / control)
-        history[slot] = np.where(silent[:, None] > 0, history[slot - 1], fresh)
-        np.maximum(silent - 1, 0, out=silent)
-        index = (slot - whole) % _HISTORY
-        wanted = np.clip(
-            (1 - part) * history[index, lines, columns] + part * history[index - 1, lines, columns],
-            -peak,
-            peak,
-        )
-        bus = (
-            supply
-            - resistance
-            * np.maximum((given * spin + heat * given**2).sum(1, keepdims=True), 0.0)
-            / supply
-        )
-        ceiling = stall * bus / nominal
-        temperature += (
-            control / thermal_time * (thermal_resistance * heat * given**2 - (temperature - 25.0))
-        )
-        strength = scale * (1.0 - derating * np.maximum(temperature - 25.0, 0.0))
-        if tick >= 0:
-            for name, values in (
-                ("position", q),
-                ("velocity", qd),
-                ("encoder", shown),
-                ("speed", speed),
-                ("motor_velocity", spin),
-                ("command", fresh),
-                ("drive_torque", torque),
-                ("pull", joint_pull),
-                ("temperature", temperature),
-                ("voltage", bus),
-            ):
+        for name, values in rigs.control(tick, host.at(tick)).items():
+            if tick >= 0:
                 recorded[name][tick] = values
         for _ in range(CONTROL_STEPS):
-            back_emf = droop * spin
-            terminal = np.clip(
-                wanted + back_emf + follow / ELECTRICAL * (wanted - torque), -ceiling, ceiling
-            )
-            torque = torque + (terminal - back_emf - torque) * min(ELECTRICAL * h, 0.9)
-            given = strength * torque
-            # Drift, kick at the middle, drift.
-            q = q + 0.5 * h * qd
-            rotor = rotor + 0.5 * h * spin
-            stretch = rotor - (q[:, None] @ matrix)[:, 0]
-            taut = stretch - np.clip(stretch, -play, play)
-            pull = stiff * taut * (1 + np.minimum((taut / soft_limit) ** 2, 3.0)) + damp * (
-                spin - (qd[:, None] @ matrix)[:, 0]
-            ) * (taut != 0)
-            joint_pull = (pull[:, None] @ transposed)[:, 0]
-            force = joint_pull
-            if at_joints:
-                capacity = (
-                    coulomb[:, m:]
-                    + (static - coulomb)[:, m:] * np.exp(-np.abs(qd / stribeck[:, m:]))
-                    + load[:, m:] * np.abs(joint_pull)
-                )
-                capacity = capacity + patch * (np.abs(q - patch_middle) < 0.15) + 1e-12
-                bound = capacity * np.sign(qd)
-                held = bound + (held - bound) * np.exp(-np.abs(qd) * (h / PRESLIDING))
-                force = force - held - viscous[:, m:] * qd
-            bent = q - rest
-            memory = (memory + 4.0 * h * qd) / (1.0 + 4.0 * h * np.abs(qd))
-            thrust = push * (np.maximum(np.sin(2 * np.pi * beat * (tick * control)), 0.0) ** 6)
-            force = (
-                force
-                + thrust
-                - spring * (q - spring_rest)
-                - hysteresis * memory
-                - hardening * bent**3
-                - (coupling @ bent[:, :, None])[:, :, 0]
-                - drag * qd * np.abs(qd)
-            )
-            qd = qd + h * np.stack(
-                [
-                    pin.aba(model, data, q[i], qd[i], force[i])
-                    for i, (model, data) in enumerate(zip(models, datas, strict=True))
-                ]
-            )
-            drive = (
-                given
-                + cogging * np.sin(order * rotor + phase)
-                + ripple * given * (np.sin(5 * rotor + 0.4) + 0.6 * np.sin(7 * rotor + 1.9))
-            )
-            free = spin + h * (drive - pull - viscous[:, :m] * spin) / inertia
-            capacity = (
-                coulomb[:, :m]
-                + (static - coulomb)[:, :m] * np.exp(-((spin / stribeck[:, :m]) ** 2))
-                + load[:, :m] * np.abs(pull)
-            )
-            spin = np.sign(free) * np.maximum(np.abs(free) - h * capacity / inertia, 0.0)
-            q = q + 0.5 * h * qd
-            rotor = rotor + 0.5 * h * spin
-    return traces_of(recorded, np.full((count, b), np.nan), control)
+            rigs.step(tick * CONTROL)
+    return traces_of(recorded, np.full((count, b), np.nan), CONTROL)
+
+
+class _Rigs:
+    """`b` rigs and where they are."""
+
+    def __init__(
+        self, plants: Sequence[RigPlant], target: np.ndarray, seeds: Sequence[int]
+    ) -> None:
+        self.matrix = stacked(plants, "joint_from_motor")
+        self.transposed = np.ascontiguousarray(np.swapaxes(self.matrix, 1, 2))
+        self.friction = _Friction(plants, self.matrix)
+        self.belts = _Belts(plants, self.matrix)
+        self.drives = _Drives(plants)
+        self.controllers = _Controllers(plants, seeds)
+        self.forces, self.ripple = UnlistedForces(plants, STEP), Ripple(plants)
+        self.inertia = stacked(plants, "rotor_inertia")
+        self.models = [p.model for p in plants]
+        self.datas = [p.model.createData() for p in plants]
+        self.q = target - stacked(plants, "offset")
+        self.qd = np.zeros(self.q.shape)
+        self.rotor = self.at_motors(self.q)
+        self.spin = np.zeros(self.rotor.shape)
+        self.joint_pull = np.zeros(self.q.shape)
+
+    def at_motors(self, values: np.ndarray) -> np.ndarray:
+        """Angles or speeds of joints `(b, n)` as those of rigid transmissions' motors `(b, m)`."""
+        return np.asarray((values[:, None] @ self.matrix)[:, 0])
+
+    def control(self, tick: int, target: np.ndarray) -> dict[str, np.ndarray]:
+        """Read the encoders, command the drives, and state what is recorded."""
+        fresh = self.controllers.command(tick, target, self.rotor)
+        self.drives.receive(self.controllers.arriving(tick, fresh), self.spin)
+        return {
+            "position": self.q,
+            "velocity": self.qd,
+            "encoder": self.controllers.shown,
+            "speed": self.controllers.speed,
+            "motor_velocity": self.spin,
+            "command": fresh,
+            "drive_torque": self.drives.torque,
+            "pull": self.joint_pull,
+            "temperature": self.drives.temperature,
+            "voltage": self.drives.bus,
+        }
+
+    def step(self, time: float) -> None:
+        """Drift half a step, change the speeds there, drift the other half."""
+        import pinocchio as pin
+
+        given = self.drives.step(self.spin)
+        self.drift()
+        pull = self.belts.pull(
+            self.rotor - self.at_motors(self.q), self.spin - self.at_motors(self.qd)
+        )
+        self.joint_pull = (pull[:, None] @ self.transposed)[:, 0]
+        force = self.joint_pull
+        if self.friction.at_joints:
+            force = self.friction.slowed_joints(force, self.q, self.qd)
+        force = self.forces.beside(force, time, self.q, self.qd)
+        self.qd = self.qd + STEP * np.stack(
+            [
+                pin.aba(model, data, self.q[i], self.qd[i], force[i])
+                for i, (model, data) in enumerate(zip(self.models, self.datas, strict=True))
+            ]
+        )
+        drive = given + self.ripple.cogging(self.rotor) + self.ripple.of_torque(self.rotor, given)
+        self.spin = self.friction.slowed_rotors(self.spin, drive, pull, self.inertia)
+        self.drift()
+
+    def drift(self) -> None:
+        """Move half a step at the speeds there are."""
+        self.q = self.q + 0.5 * STEP * self.qd
+        self.rotor = self.rotor + 0.5 * STEP * self.spin
+
+
+class _Controllers:
+    """Joint controllers on encoders of the rotors, and commands that get lost or are late."""
+
+    def __init__(self, plants: Sequence[RigPlant], seeds: Sequence[int]) -> None:
+        declared = stacked(plants, "declared")
+        ratio = np.abs(declared).max(1)
+        least = stacked(plants, "resolution").min(-1, keepdims=True)
+        self.counts = least * ratio / np.where(ratio > 1, 12, 2)
+        self.allot = np.ascontiguousarray(np.stack([np.linalg.pinv(p.declared).T for p in plants]))
+        # (b, m, n): q^T = theta^T pinv(M)
+        self.from_rotor = np.ascontiguousarray(np.linalg.pinv(declared))
+        self.kp, self.kd = stacked(plants, "stiffness"), stacked(plants, "damping")
+        self.offset, self.drift = stacked(plants, "offset"), stacked(plants, "drift")
+        self.eccentricity = stacked(plants, "eccentricity")
+        self.loss = stacked(plants, "loss")
+        self.dice = [np.random.default_rng([seed, 1]) for seed in seeds]
+        self.silent = np.zeros(len(plants), int)
+        self.line = DelayLine(stacked(plants, "delay"), CONTROL)
+        self.seen: np.ndarray | None = None
+        self.shown = self.speed = np.zeros(self.kp.shape)
+
+    def command(self, tick: int, target: np.ndarray, rotor: np.ndarray) -> np.ndarray:
+        """Torques that the motors are to give `(b, m)` [Nm], from what their encoders show."""
+        angles = (np.round(rotor / self.counts) * self.counts)[:, None]
+        reading = (angles @ self.from_rotor)[:, 0]
+        self.shown = (
+            reading
+            + self.offset
+            + self.eccentricity * np.sin(3 * reading)
+            + self.drift * max(tick * CONTROL, 0.0)
+        )
+        if self.seen is None:
+            self.seen = np.repeat(self.shown[None], DIFFERENCED + 1, 0)
+        before = self.seen[(tick + 1) % (DIFFERENCED + 1)]
+        self.speed = (self.shown - before) / (DIFFERENCED * CONTROL)
+        self.seen[tick % (DIFFERENCED + 1)] = self.shown
+        joint = self.kp * (target - self.shown) - self.kd * self.speed
+        return np.asarray((joint[:, None] @ self.allot)[:, 0])
+
+    def arriving(self, tick: int, command: np.ndarray) -> np.ndarray:
+        """What comes to the drives at a tick at which a command is sent, `(b, m)` [Nm]."""
+        for i in np.flatnonzero(self.loss):
+            chance = self.loss[i] * CONTROL / (0.04 * (1 - self.loss[i]))
+            if self.silent[i] == 0 and self.dice[i].random() < chance:
+                self.silent[i] = 1 + int(self.dice[i].exponential(0.04) / CONTROL)
+        arrived = self.line.send(tick, command, self.silent[:, None] > 0)
+        np.maximum(self.silent - 1, 0, out=self.silent)
+        return arrived
+
+
+class _Drives:
+    """Windings under a supply that sags, and motors that lose torque as they warm up."""
+
+    def __init__(self, plants: Sequence[RigPlant]) -> None:
+        self.peak, self.stall = stacked(plants, "peak_torque"), stacked(plants, "stall_torque")
+        self.droop = self.stall / stacked(plants, "no_load_speed")
+        self.nominal = stacked(plants, "voltage")[:, None]
+        self.supply = stacked(plants, "supply")[:, None]
+        self.resistance = stacked(plants, "supply_resistance")[:, None]
+        self.heat = stacked(plants, "power_constant")
+        self.thermal_resistance = stacked(plants, "thermal_resistance")
+        self.thermal_time = stacked(plants, "thermal_time")
+        self.temperature = stacked(plants, "start_temperature")
+        self.scale, self.derating = stacked(plants, "torque_scale"), stacked(plants, "derating")
+        self.follow = 1.0 / np.maximum(stacked(plants, "lag"), 2 * STEP)
+        self.bus = np.broadcast_to(self.supply, self.supply.shape).copy()
+        self.torque = self.given = self.wanted = np.zeros(self.peak.shape)
+
+    def receive(self, wanted: np.ndarray, spin: np.ndarray) -> None:
+        """Take new commands, and see what supply and temperature allow until the next ones."""
+        self.wanted = np.clip(wanted, -self.peak, self.peak)
+        power = (self.given * spin + self.heat * self.given**2).sum(1, keepdims=True)
+        self.bus = self.supply - self.resistance * np.maximum(power, 0.0) / self.supply
+        self.ceiling = self.stall * self.bus / self.nominal
+        warming = self.thermal_resistance * self.heat * self.given**2 - (self.temperature - 25.0)
+        self.temperature = self.temperature + CONTROL / self.thermal_time * warming
+        warm = np.maximum(self.temperature - 25.0, 0.0)
+        self.strength = self.scale * (1.0 - self.derating * warm)
+
+    def step(self, spin: np.ndarray) -> np.ndarray:
+        """Torques of the motors after one step `(b, m)` [Nm]."""
+        back_emf = self.droop * spin
+        ahead = self.follow / ELECTRICAL * (self.wanted - self.torque)
+        terminal = np.clip(self.wanted + back_emf + ahead, -self.ceiling, self.ceiling)
+        self.torque = self.torque + (terminal - back_emf - self.torque) * min(
+            ELECTRICAL * STEP, 0.9
+        )
+        self.given = self.strength * self.torque
+        return self.given
+
+
+class _Belts:
+    """Belts with play, which stiffen as they stretch."""
+
+    def __init__(self, plants: Sequence[RigPlant], matrix: np.ndarray) -> None:
+        mobility = np.stack(
+            [
+                1 / p.rotor_inertia + np.einsum("im,ij,jm->m", k, inverse_inertia(p), k)
+                for p, k in zip(plants, matrix, strict=True)
+            ]
+        )
+        # Belts too stiff for the step get the stiffest that it carries: they stay rigid to the eye
+        # of a log.
+        stiff = BELT_STIFFNESS * stacked(plants, "belt_stiffness")
+        self.stiff = np.minimum(stiff, (0.45 / STEP) ** 2 / mobility)
+        damp = BELT_DAMPING * stacked(plants, "belt_damping")
+        self.damp = np.minimum(damp, 0.25 / (STEP * mobility))
+        self.play = stacked(plants, "backlash") / 2
+        self.soft_limit = STIFFENING * np.abs(matrix).max(1)
+
+    def pull(self, stretch: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """Torques on the motors' side `(b, m)` [Nm], of stretches [rad] and their rates [rad/s]."""
+        taut = stretch - np.clip(stretch, -self.play, self.play)
+        stiffened = 1.0 + np.minimum((taut / self.soft_limit) ** 2, 3.0)
+        return np.asarray(self.stiff * taut * stiffened + self.damp * rate * (taut != 0))
+
+
+class _Friction:
+    """Friction of gears at the rotors, with exact sticking; of coupled joints Dahl's there."""
+
+    def __init__(self, plants: Sequence[RigPlant], matrix: np.ndarray) -> None:
+        m = self.motors = matrix.shape[-1]
+        self.coulomb, self.static = stacked(plants, "coulomb"), stacked(plants, "static")
+        self.stribeck, self.viscous = stacked(plants, "stribeck_speed"), stacked(plants, "viscous")
+        self.load = stacked(plants, "load_friction")
+        self.patch, self.patch_middle = stacked(plants, "patch"), stacked(plants, "patch_middle")
+        declared = plants[0].declared
+        coupled = matrix.shape[1] != m or bool(np.any(declared - np.diag(np.diag(declared))))
+        if not coupled:
+            self.before_the_gear(np.abs(np.diagonal(matrix, axis1=1, axis2=2)))
+        self.held = np.zeros(self.patch.shape)
+        own = (self.coulomb, self.static, self.viscous, self.load)
+        self.at_joints = bool(self.patch.any() or any(values[:, m:].any() for values in own))
+
+    def before_the_gear(self, gear: np.ndarray) -> None:
+        """Move friction of the joints to the rotors of gears one to one."""
+        m = self.motors
+        for values in (self.coulomb, self.static, self.viscous):
+            values[:, :m] += values[:, m:] / (gear if values is not self.viscous else gear**2)
+            values[:, m:] = 0
+        of_joints = self.stribeck[:, m:] * gear
+        self.stribeck[:, :m] = np.where(self.load[:, m:] > 0, self.stribeck[:, :m], of_joints)
+        self.load[:, :m] += self.load[:, m:]
+        self.load[:, m:] = 0
+
+    def slowed_joints(self, pull: np.ndarray, q: np.ndarray, qd: np.ndarray) -> np.ndarray:
+        """Torques at the joints less friction `(b, n)` [Nm]."""
+        m = self.motors
+        capacity = (
+            self.coulomb[:, m:]
+            + (self.static - self.coulomb)[:, m:] * np.exp(-np.abs(qd / self.stribeck[:, m:]))
+            + self.load[:, m:] * np.abs(pull)
+        )
+        capacity = capacity + self.patch * (np.abs(q - self.patch_middle) < 0.15) + 1e-12
+        bound = capacity * np.sign(qd)
+        self.held = bound + (self.held - bound) * np.exp(-np.abs(qd) * (STEP / PRESLIDING))
+        return np.asarray(pull - self.held - self.viscous[:, m:] * qd)
+
+    def slowed_rotors(
+        self, spin: np.ndarray, drive: np.ndarray, pull: np.ndarray, inertia: np.ndarray
+    ) -> np.ndarray:
+        """Speeds of the rotors after one step `(b, m)` [rad/s]."""
+        m = self.motors
+        free = spin + STEP * (drive - pull - self.viscous[:, :m] * spin) / inertia
+        capacity = (
+            self.coulomb[:, :m]
+            + (self.static - self.coulomb)[:, :m] * np.exp(-((spin / self.stribeck[:, :m]) ** 2))
+            + self.load[:, :m] * np.abs(pull)
+        )
+        slowed = np.maximum(np.abs(free) - STEP * capacity / inertia, 0.0)
+        return np.asarray(np.sign(free) * slowed)

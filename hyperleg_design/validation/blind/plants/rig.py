@@ -13,6 +13,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hyperleg_design.validation.blind.plants.parts import (
+    DelayLine,
+    HostTargets,
+    Ripple,
+    UnlistedForces,
+    stacked,
+)
 from hyperleg_design.validation.blind.plants.plant import (
     RigPlant,
     Trace,
@@ -29,8 +36,8 @@ SETTLING = 0.6
 """Time that the first target is held before the recording begins [s]."""
 BRISTLE_DAMPING = 3e-4
 """Damping over stiffness of the friction's bristles [s]."""
-_HISTORY = 128
-"""Commands kept for the delay line, 1 ms each."""
+CONTROL = STEP * CONTROL_STEPS
+"""Between ticks of the controllers [s]."""
 
 
 def simulate(
@@ -50,195 +57,249 @@ def simulate(
         rate: of the host [Hz]; divides 1 kHz.
         seeds: of what is random inside the plant (lost packets), one a rig.
         energy: also compute the energy, for checks.
+
+    Returns:
+        One trace a rig.
     """
-    import pinocchio as pin
-
     b, ticks, n = targets.shape
-    m = plants[0].rotor_inertia.size
-
-    def stack(name: str) -> np.ndarray:
-        return np.stack([np.asarray(getattr(p, name), float) for p in plants])
-
-    hold = round(1.0 / (rate * STEP * CONTROL_STEPS))
-    lead = round(SETTLING / (STEP * CONTROL_STEPS))
+    hold, lead = round(1.0 / (rate * CONTROL)), round(SETTLING / CONTROL)
     count = ticks * hold
-    h, control = STEP, STEP * CONTROL_STEPS
-    matrix = stack("joint_from_motor")
-    split = np.concatenate([np.broadcast_to(np.eye(m), (b, m, m)), -matrix], axis=1)
-    back = np.ascontiguousarray(np.swapaxes(split, 1, 2))
-    split = np.ascontiguousarray(split)
-    from_joint = np.stack([np.linalg.pinv(p.declared) for p in plants])
-    to_motor = np.ascontiguousarray(np.swapaxes(from_joint, 1, 2))
-
-    stiff, damp, play = stack("belt_stiffness"), stack("belt_damping"), stack("backlash") / 2
-    coulomb, static, stribeck = stack("coulomb"), stack("static"), stack("stribeck_speed")
-    viscous, bristle, load = stack("viscous"), stack("bristle"), stack("load_friction")
-    size = np.maximum(np.maximum(coulomb, static), 1e-9)
-    excess, slide, gain = static - coulomb, h * size / bristle, h / bristle
-    inverse_rotor = 1.0 / stack("rotor_inertia")
-    ahead, soften = _stiff_belts(plants, stiff, damp, inverse_rotor, matrix)
-    spring, spring_rest = stack("spring"), stack("spring_rest")
-    cogging, order, phase = stack("cogging"), stack("cogging_order"), stack("cogging_phase")
-    scale, derating = stack("torque_scale"), stack("derating")
-    peak, stall, fastest = stack("peak_torque"), stack("stall_torque"), stack("no_load_speed")
-    nominal = stack("voltage")[:, None]
-    supply = stack("supply")[:, None]
-    resistance = stack("supply_resistance")[:, None]
-    heat = stack("power_constant")
-    thermal_resistance = stack("thermal_resistance")
-    thermal_time = stack("thermal_time")
-    temperature = stack("start_temperature")
-    delay = stack("delay") / control
-    whole = np.floor(delay).astype(int)
-    part = delay - whole
-    lag = -np.expm1(-h / np.maximum(stack("lag"), 1e-6))
-    kp, kd = stack("stiffness"), stack("damping")
-    offset, resolution, drift = stack("offset"), stack("resolution"), stack("drift")
-    smooth = -np.expm1(-2 * np.pi * stack("velocity_bandwidth")[:, None] * control)
-    ripple = stack("ripple")
-    patch = stack("patch")
-    patch_middle = stack("patch_middle")
-    hysteresis = stack("hysteresis")
-    push = stack("push")
-    beat = stack("push_frequency")[:, None]
-    hardening = stack("hardening")
-    coupling = stack("coupling")
-    drag, eccentricity, rest = stack("drag"), stack("eccentricity"), stack("rest")
-    lost = _lost(stack("loss"), lead + count, control, seeds)
-
-    drag_rate = damp + stiff * ahead
-    has_play, has_load, has_patch = bool(play.any()), bool(load.any()), bool(patch.any())
-    has_extra = any(a.any() for a in (spring, hysteresis, push, hardening, coupling, drag))
-    has_motor_extra = any(a.any() for a in (cogging, ripple))
-    models, datas = [p.model for p in plants], [p.model.createData() for p in plants]
-    aba = pin.aba
-    lines, columns = np.arange(b)[:, None], np.arange(m)[None, :]
-
-    state = np.zeros((2, b, 1, m + n))
-    x, v = state[0, :, 0], state[1, :, 0]
-    x[:, m:] = targets[:, 0] - offset
-    x[:, :m] = (x[:, None, m:] @ matrix)[:, 0]
-    bristles, memory = np.zeros((b, m + n)), np.zeros((b, n))
-    current, wanted = np.zeros((b, m)), np.zeros((b, m))
-    history = np.zeros((_HISTORY, b, m))
-    speed = np.zeros((b, n))
-    bus = np.broadcast_to(supply, (b, 1)).copy()
-    force = np.empty((b, m + n))
-    rates = np.empty((b, m + n))
-    given = np.zeros((b, m))
-    droop = stall / fastest
-
-    recorded = {name: np.empty((count, b, width)) for name, width in columns_of(n, m).items()}
+    host, rigs = HostTargets(targets, hold), _Rigs(plants, targets[:, 0])
+    lost = _lost(stacked(plants, "loss"), lead + count, CONTROL, seeds)
+    columns = columns_of(n, plants[0].rotor_inertia.size)
+    recorded = {name: np.empty((count, b, width)) for name, width in columns.items()}
     energies = np.full((count, b), np.nan)
     for tick in range(-lead, count):
-        row, within = divmod(max(tick, 0), hold)
-        target = targets[:, row] + (targets[:, min(row + 1, ticks - 1)] - targets[:, row]) * (
-            within / hold
-        )
-        angle = x[:, m:]
-        encoder = angle + offset
-        if tick > 0 and drift.any():
-            encoder = encoder + drift * (tick * control)
-        if eccentricity.any():
-            encoder = encoder + eccentricity * np.sin(3 * angle)
-        encoder = np.round(encoder / resolution) * resolution
-        speed += smooth * (v[:, m:] - speed)
-        joint = kp * (target - encoder) - kd * speed
-        fresh = (joint[:, None] @ to_motor)[:, 0]
-        place = tick % _HISTORY
-        history[place] = np.where(lost[:, tick + lead, None], history[place - 1], fresh)
-        late = (place - whole) % _HISTORY
-        wanted = (1 - part) * history[late, lines, columns] + part * history[
-            late - 1, lines, columns
-        ]
-        # The drives' limits: current, and the voltage that is there against the rotor's back-EMF.
-        available = stall * (bus / nominal)
-        back_emf = droop * v[:, :m]
-        wanted = np.clip(np.clip(wanted, -available - back_emf, available - back_emf), -peak, peak)
-        power = np.maximum((given * v[:, :m] + heat * given * given).sum(1, keepdims=True), 0.0)
-        bus = supply - resistance * power / supply
-        temperature += (
-            control
-            / thermal_time
-            * (thermal_resistance * heat * given * given - (temperature - 25.0))
-        )
-        strength = scale * (1.0 - derating * np.maximum(temperature - 25.0, 0.0))
+        values = rigs.control(tick, host.at(tick), lost[:, tick + lead, None])
         if tick >= 0:
-            recorded["position"][tick], recorded["velocity"][tick] = angle, v[:, m:]
-            recorded["encoder"][tick], recorded["speed"][tick] = encoder, speed
-            recorded["motor_velocity"][tick], recorded["command"][tick] = v[:, :m], fresh
-            recorded["drive_torque"][tick], recorded["temperature"][tick] = current, temperature
-            recorded["voltage"][tick] = bus
+            for name, value in values.items():
+                recorded[name][tick] = value
         for _ in range(CONTROL_STEPS):
-            current += lag * (wanted - current)
-            np.multiply(current, strength, out=given)
-            stretch = (state @ split)[:, :, 0]
-            taut = stretch[0] - np.clip(stretch[0], -play, play) if has_play else stretch[0]
-            pull = stiff * taut
-            rated = drag_rate * stretch[1]
-            pull += rated * (taut != 0) if has_play else rated
-            pull *= soften
-            np.negative((pull[:, None] @ back)[:, 0], out=force)
-            magnitude = np.abs(v)
-            level = v / stribeck
-            level *= level
-            np.negative(level, out=level)
-            np.exp(level, out=level)
-            level *= excess
-            level += coulomb
-            if has_load:
-                level += load * np.abs(force)
-            if has_patch:
-                level[:, m:] += patch * (np.abs(x[:, m:] - patch_middle) < 0.15)
-            level += 1e-12
-            magnitude *= slide
-            magnitude /= level
-            magnitude += 1.0
-            fresh_bristles = bristles + gain * v
-            fresh_bristles /= magnitude
-            np.subtract(fresh_bristles, bristles, out=rates)
-            rates *= BRISTLE_DAMPING / h
-            rates += fresh_bristles
-            rates *= size
-            rates += viscous * v
-            bristles = fresh_bristles
-            force -= rates
-            if has_extra:
-                q, qd = x[:, m:], v[:, m:]
-                bent = q - rest
-                memory = (memory + 4.0 * h * qd) / (1.0 + 4.0 * h * np.abs(qd))
-                thrust = push * (np.maximum(np.sin(2 * np.pi * beat * (tick * control)), 0.0) ** 6)
-                force[:, m:] += (
-                    thrust
-                    - spring * (q - spring_rest)
-                    - hysteresis * memory
-                    - hardening * bent**3
-                    - (coupling @ bent[:, :, None])[:, :, 0]
-                    - drag * qd * np.abs(qd)
-                )
-            force[:, :m] += given
-            if has_motor_extra:
-                turned = x[:, :m]
-                force[:, :m] += cogging * np.sin(order * turned + phase) + ripple * given * (
-                    np.sin(5 * turned + 0.4) + 0.6 * np.sin(7 * turned + 1.9)
-                )
-            joints = force[:, m:]
-            for i in range(b):
-                joints[i] = aba(models[i], datas[i], x[i, m:], v[i, m:], joints[i])
-            force[:, :m] *= inverse_rotor
-            force *= h
-            v += force
-            x += h * v
+            rigs.step(tick * CONTROL)
         if tick >= 0:
-            recorded["pull"][tick] = -(pull[:, None] @ back)[:, 0][:, m:]
+            recorded["pull"][tick] = rigs.joint_pull()
             if energy:
-                energies[tick] = [
-                    pin.computeMechanicalEnergy(models[i], datas[i], x[i, m:], v[i, m:])
-                    + 0.5 * (v[i, :m] ** 2 / inverse_rotor[i]).sum()
-                    + 0.5 * (stiff[i] * (x[i] @ split[i]) ** 2).sum()
-                    for i in range(b)
-                ]
-    return traces_of(recorded, energies, control)
+                energies[tick] = rigs.energies()
+    return traces_of(recorded, energies, CONTROL)
+
+
+class _Rigs:
+    """`b` rigs and where they are."""
+
+    def __init__(self, plants: Sequence[RigPlant], target: np.ndarray) -> None:
+        matrix = stacked(plants, "joint_from_motor")
+        b, n, m = matrix.shape
+        self.motors = m
+        self.belts, self.friction = _Belts(plants, matrix), _Friction(plants)
+        self.drives, self.controllers = _Drives(plants), _Controllers(plants)
+        self.forces, self.ripple = UnlistedForces(plants, STEP), Ripple(plants)
+        self.inverse_rotor = 1.0 / stacked(plants, "rotor_inertia")
+        self.models = [p.model for p in plants]
+        self.datas = [p.model.createData() for p in plants]
+        self.state = np.zeros((2, b, 1, m + n))
+        self.x, self.v = self.state[0, :, 0], self.state[1, :, 0]
+        self.x[:, m:] = target - stacked(plants, "offset")
+        self.x[:, :m] = (self.x[:, None, m:] @ matrix)[:, 0]
+
+    def control(self, tick: int, target: np.ndarray, lost: np.ndarray) -> dict[str, np.ndarray]:
+        """Read the encoders, command the drives, and state what is recorded."""
+        m, controllers, drives = self.motors, self.controllers, self.drives
+        q, qd, spin = self.x[:, m:], self.v[:, m:], self.v[:, :m]
+        fresh = controllers.command(tick, target, q, qd)
+        drives.receive(controllers.line.send(tick, fresh, lost), spin)
+        return {
+            "position": q,
+            "velocity": qd,
+            "encoder": controllers.encoder,
+            "speed": controllers.speed,
+            "motor_velocity": spin,
+            "command": fresh,
+            "drive_torque": drives.current,
+            "temperature": drives.temperature,
+            "voltage": drives.bus,
+        }
+
+    def step(self, time: float) -> None:
+        """Change the speeds, then move at the new ones."""
+        import pinocchio as pin
+
+        m, x, v = self.motors, self.x, self.v
+        given = self.drives.step()
+        force = self.belts.force(self.state)
+        force -= self.friction.of(force, x, v)
+        if self.forces.act:
+            force[:, m:] += self.forces.beside(0.0, time, x[:, m:], v[:, m:])
+        force[:, :m] += given
+        if self.ripple.act:
+            turned = x[:, :m]
+            force[:, :m] += self.ripple.cogging(turned) + self.ripple.of_torque(turned, given)
+        joints = force[:, m:]
+        for i, (model, data) in enumerate(zip(self.models, self.datas, strict=True)):
+            joints[i] = pin.aba(model, data, x[i, m:], v[i, m:], joints[i])
+        force[:, :m] *= self.inverse_rotor
+        force *= STEP
+        v += force
+        x += STEP * v
+
+    def joint_pull(self) -> np.ndarray:
+        """Torques of the belts on the joints in the last step `(b, n)` [Nm]."""
+        return -(self.belts.pull[:, None] @ self.belts.back)[:, 0][:, self.motors :]
+
+    def energies(self) -> list[float]:
+        """Kinetic and elastic energy of rotors and belts, and of the bodies `(b,)` [J]."""
+        import pinocchio as pin
+
+        m, x, v, belts = self.motors, self.x, self.v, self.belts
+        return [
+            pin.computeMechanicalEnergy(model, data, x[i, m:], v[i, m:])
+            + 0.5 * (v[i, :m] ** 2 / self.inverse_rotor[i]).sum()
+            + 0.5 * (belts.stiff[i] * (x[i] @ belts.split[i]) ** 2).sum()
+            for i, (model, data) in enumerate(zip(self.models, self.datas, strict=True))
+        ]
+
+
+class _Controllers:
+    """Joint controllers on encoders of the joints."""
+
+    def __init__(self, plants: Sequence[RigPlant]) -> None:
+        from_joint = np.stack([np.linalg.pinv(p.declared) for p in plants])
+        self.to_motor = np.ascontiguousarray(np.swapaxes(from_joint, 1, 2))
+        self.kp, self.kd = stacked(plants, "stiffness"), stacked(plants, "damping")
+        self.offset, self.drift = stacked(plants, "offset"), stacked(plants, "drift")
+        self.resolution = stacked(plants, "resolution")
+        self.eccentricity = stacked(plants, "eccentricity")
+        bandwidth = stacked(plants, "velocity_bandwidth")[:, None]
+        self.smooth = -np.expm1(-2 * np.pi * bandwidth * CONTROL)
+        self.line = DelayLine(stacked(plants, "delay"), CONTROL)
+        self.speed, self.encoder = np.zeros(self.kp.shape), np.zeros(self.kp.shape)
+
+    def command(
+        self, tick: int, target: np.ndarray, angle: np.ndarray, rate: np.ndarray
+    ) -> np.ndarray:
+        """Torques that the motors are to give `(b, m)` [Nm], from what the encoders show."""
+        encoder = angle + self.offset
+        if tick > 0 and self.drift.any():
+            encoder = encoder + self.drift * (tick * CONTROL)
+        if self.eccentricity.any():
+            encoder = encoder + self.eccentricity * np.sin(3 * angle)
+        self.encoder = np.round(encoder / self.resolution) * self.resolution
+        self.speed += self.smooth * (rate - self.speed)
+        joint = self.kp * (target - self.encoder) - self.kd * self.speed
+        return np.asarray((joint[:, None] @ self.to_motor)[:, 0])
+
+
+class _Drives:
+    """Torque loops of first order within an envelope, under a supply that sags, and motors that
+    lose torque as they warm up.
+    """
+
+    def __init__(self, plants: Sequence[RigPlant]) -> None:
+        self.peak, self.stall = stacked(plants, "peak_torque"), stacked(plants, "stall_torque")
+        self.droop = self.stall / stacked(plants, "no_load_speed")
+        self.nominal = stacked(plants, "voltage")[:, None]
+        self.supply = stacked(plants, "supply")[:, None]
+        self.resistance = stacked(plants, "supply_resistance")[:, None]
+        self.heat = stacked(plants, "power_constant")
+        self.thermal_resistance = stacked(plants, "thermal_resistance")
+        self.thermal_time = stacked(plants, "thermal_time")
+        self.temperature = stacked(plants, "start_temperature")
+        self.scale, self.derating = stacked(plants, "torque_scale"), stacked(plants, "derating")
+        self.lag = -np.expm1(-STEP / np.maximum(stacked(plants, "lag"), 1e-6))
+        self.bus = np.broadcast_to(self.supply, self.supply.shape).copy()
+        self.current, self.given = np.zeros(self.peak.shape), np.zeros(self.peak.shape)
+
+    def receive(self, wanted: np.ndarray, spin: np.ndarray) -> None:
+        """Take new commands, and see what supply and temperature allow until the next ones."""
+        # current, and the voltage that is there against the rotor's back-EMF
+        available = self.stall * (self.bus / self.nominal)
+        back_emf = self.droop * spin
+        within = np.clip(wanted, -available - back_emf, available - back_emf)
+        self.wanted = np.clip(within, -self.peak, self.peak)
+        given = self.given
+        power = np.maximum((given * spin + self.heat * given * given).sum(1, keepdims=True), 0.0)
+        self.bus = self.supply - self.resistance * power / self.supply
+        warming = self.thermal_resistance * self.heat * given * given - (self.temperature - 25.0)
+        self.temperature += CONTROL / self.thermal_time * warming
+        warm = np.maximum(self.temperature - 25.0, 0.0)
+        self.strength = self.scale * (1.0 - self.derating * warm)
+
+    def step(self) -> np.ndarray:
+        """Torques of the motors after one step `(b, m)` [Nm]."""
+        self.current += self.lag * (self.wanted - self.current)
+        return np.multiply(self.current, self.strength, out=self.given)
+
+
+class _Belts:
+    """Linear belts with play."""
+
+    def __init__(self, plants: Sequence[RigPlant], matrix: np.ndarray) -> None:
+        b, _, m = matrix.shape
+        split = np.concatenate([np.broadcast_to(np.eye(m), (b, m, m)), -matrix], axis=1)
+        self.back = np.ascontiguousarray(np.swapaxes(split, 1, 2))
+        self.split = np.ascontiguousarray(split)
+        self.stiff, damp = stacked(plants, "belt_stiffness"), stacked(plants, "belt_damping")
+        self.play = stacked(plants, "backlash") / 2
+        self.has_play = bool(self.play.any())
+        inverse_rotor = 1.0 / stacked(plants, "rotor_inertia")
+        ahead, self.soften = _stiff_belts(plants, self.stiff, damp, inverse_rotor, matrix)
+        self.drag = damp + self.stiff * ahead
+        self.pull = np.zeros((b, m))
+
+    def force(self, state: np.ndarray) -> np.ndarray:
+        """Torques on motors and joints `(b, m + n)` [Nm]."""
+        stretch = (state @ self.split)[:, :, 0]
+        if self.has_play:
+            taut = stretch[0] - np.clip(stretch[0], -self.play, self.play)
+            rated = self.drag * stretch[1] * (taut != 0)
+        else:
+            taut, rated = stretch[0], self.drag * stretch[1]
+        self.pull = (self.stiff * taut + rated) * self.soften
+        return np.negative((self.pull[:, None] @ self.back)[:, 0])
+
+
+class _Friction:
+    """LuGre friction of motors and joints."""
+
+    def __init__(self, plants: Sequence[RigPlant]) -> None:
+        self.coulomb, self.stribeck = stacked(plants, "coulomb"), stacked(plants, "stribeck_speed")
+        static, bristle = stacked(plants, "static"), stacked(plants, "bristle")
+        self.viscous, self.load = stacked(plants, "viscous"), stacked(plants, "load_friction")
+        self.patch, self.patch_middle = stacked(plants, "patch"), stacked(plants, "patch_middle")
+        self.has_load, self.has_patch = bool(self.load.any()), bool(self.patch.any())
+        self.size = np.maximum(np.maximum(self.coulomb, static), 1e-9)
+        self.excess, self.gain = static - self.coulomb, STEP / bristle
+        self.slide = STEP * self.size / bristle
+        self.joints = slice(self.size.shape[1] - self.patch.shape[1], None)
+        self.bristles = np.zeros(self.size.shape)
+        self.rates = np.empty(self.size.shape)
+
+    def of(self, pulled: np.ndarray, x: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Friction after one step `(b, m + n)` [Nm]; in place, as it is most of a step's time."""
+        level = v / self.stribeck
+        level *= level
+        np.negative(level, out=level)
+        np.exp(level, out=level)
+        level *= self.excess
+        level += self.coulomb
+        if self.has_load:
+            level += self.load * np.abs(pulled)
+        if self.has_patch:
+            inside = np.abs(x[:, self.joints] - self.patch_middle) < 0.15
+            level[:, self.joints] += self.patch * inside
+        level += 1e-12
+        magnitude = np.abs(v)
+        magnitude *= self.slide
+        magnitude /= level
+        magnitude += 1.0
+        bristles = self.bristles + self.gain * v
+        bristles /= magnitude
+        friction = np.subtract(bristles, self.bristles, out=self.rates)
+        friction *= BRISTLE_DAMPING / STEP
+        friction += bristles
+        friction *= self.size
+        friction += self.viscous * v
+        self.bristles = bristles
+        return friction
 
 
 def _stiff_belts(
