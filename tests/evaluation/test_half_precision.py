@@ -5,13 +5,14 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
-import onnx
 import onnxruntime
 import pytest
-from onnx import TensorProto, helper, numpy_helper
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.half_precision import halve_weights
+
+onnx = pytest.importorskip("onnx")
+from onnx import TensorProto, helper, numpy_helper  # noqa: E402
 
 SIZES = (40, 64, 32, 14)
 

@@ -5,6 +5,9 @@ import json
 import pytest
 
 from hyperleg_design.errors import InputError
+
+pytest.importorskip("torch")
+
 from hyperleg_design.learning.learner.device import check_device
 from hyperleg_design.learning.train import train
 
