@@ -16,6 +16,7 @@ import numpy as np
 
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.mjcf import FLOOR, mujoco_spec
+from hyperleg_design.validation.blind.plants.parts import DelayLine
 from hyperleg_design.validation.blind.plants.plant import RigPlant
 from hyperleg_design.validation.blind.plants.rig import BRISTLE_DAMPING
 from hyperleg_design.validation.blind.plants.stand import AHEAD, Stand
@@ -25,6 +26,8 @@ STEP = 0.25e-3
 """Of the integrator [s]."""
 CONTROL_STEPS = 4
 """Integrator steps a tick of the drives' controllers: 1 kHz."""
+CONTROL = STEP * CONTROL_STEPS
+"""Between ticks of the controllers [s]."""
 SETTLING = 1.0
 """Time of standing before the recording begins [s]."""
 FALLEN = 0.45
@@ -162,154 +165,183 @@ def simulate_walking(
         duration: of the recording [s].
         rate: of the host [Hz]; divides 1 kHz.
         seed: of lost commands.
-    """
-    import mujoco
 
-    model, p = plant.model, plant.drives
-    data = mujoco.MjData(model)
-    n, m = p.joint_from_motor.shape
-    address = np.array([model.joint(j).qposadr[0] for j in chain.joints])
-    dof = np.array([model.joint(j).dofadr[0] for j in chain.joints])
-    assert np.array_equal(address, np.arange(7, 7 + n))
-    assert np.array_equal(dof, np.arange(6, 6 + n))
-    sides = _sides(model, chain)
-    control, h = STEP * CONTROL_STEPS, STEP
-    hold, lead = round(1.0 / (rate * control)), round(SETTLING / control)
+    Returns:
+        What happened; of a robot that fell up to there, zeros behind.
+    """
+    hold, lead = round(1.0 / (rate * CONTROL)), round(SETTLING / CONTROL)
     ticks = round(duration * rate)
     count = ticks * hold
-    matrix, allot = p.joint_from_motor, np.linalg.pinv(p.declared)
-    inverse_rotor = 1.0 / p.rotor_inertia
-    friction = {
-        k: getattr(p, k)[m:] for k in ("coulomb", "static", "stribeck_speed", "viscous", "bristle")
-    }
-    size = np.maximum(friction["static"], 1e-9)
-    lag, late = -np.expm1(-h / np.maximum(p.lag, 1e-6)), p.delay / control
-    whole = np.floor(late).astype(int)
-    part = late - whole
-    dice = np.random.default_rng(seed)
-    silent = 0
-
-    first = stand.targets(0.0, AHEAD, 0.0, 0.0, 0.0, sides)
-    data.qpos[7:] = first
-    mujoco.mj_kinematics(model, data)
-    pads = [model.geom(name).id for name in pad_names(model)]
-    data.qpos[2] -= min(data.geom_xpos[g, 2] - model.geom_size[g, 0] for g in pads)
-    mujoco.mj_forward(model, data)
-    rotor, spin = matrix.T @ data.qpos[7:], np.zeros(m)
-    bristles, speed, current = np.zeros(n), np.zeros(n), np.zeros(m)
-    history = np.zeros((128, m))
-    columns = np.arange(m)
-    smooth = -np.expm1(-2 * np.pi * p.velocity_bandwidth * control)
-    pad_of = {g: i for i, g in enumerate(pads)}
-    previous = fresh_target = first
-    ankles = [model.body(f"{side}_foot").id for side in ("left", "right")]
-    recorded = {
-        k: np.zeros((count, w))
-        for k, w in (
-            ("encoder", n),
-            ("speed", n),
-            ("motor_velocity", m),
-            ("command", m),
-            ("drive_torque", m),
-            ("temperature", m),
-            ("base", 10),
-            ("gyro", 3),
-            ("accelerometer", 3),
-        )
-    }
-    contact, targets = np.zeros((count, len(pads), 3)), np.zeros((ticks, n))
-    gyro = model.sensor("gyro").adr[0]
-    accelerometer = model.sensor("accelerometer").adr[0]
-    wrench, fell = np.zeros(6), False
-    root = model.body("pelvis").id
+    robot = _Walker(plant, chain, stand, seed)
+    n, m = plant.drives.joint_from_motor.shape
+    recorded = {name: np.zeros((count, *shape)) for name, shape in robot.columns(n, m).items()}
+    targets = np.zeros((ticks, n))
+    before = after = robot.first
     for tick in range(-lead, count):
         row, within = divmod(tick, hold)
         if within == 0:
-            ahead = data.subtree_com[root, 0] - 0.5 * (
-                data.xpos[ankles[0], 0] + data.xpos[ankles[1], 0]
-            )
-            mujoco.mj_subtreeVel(model, data)
-            previous = fresh_target
-            fresh_target = stand.targets(
-                row / rate,
-                ahead,
-                data.subtree_linvel[root, 0],
-                _roll(data.qpos[3:7]),
-                data.qvel[3],
-                sides,
-            )
+            before, after = after, robot.asked(row / rate)
             if tick >= 0:
-                targets[row] = previous
+                targets[row] = before
         # The drives run from one target to the next, which smooths the steps between the host's
         # ticks.
-        target = previous + (fresh_target - previous) * (within / hold)
-        encoder = data.qpos[7:] + p.offset + p.drift * max(tick * control, 0.0)
-        encoder = np.round(encoder / p.resolution) * p.resolution
-        speed = speed + smooth * (data.qvel[6:] - speed)
-        fresh = allot @ (p.stiffness * (target - encoder) - p.damping * speed)
-        if p.loss and silent == 0 and dice.random() < p.loss * control / (0.04 * (1 - p.loss)):
-            silent = 1 + int(dice.exponential(0.04) / control)
-        history[tick % 128] = history[(tick - 1) % 128] if silent else fresh
-        silent = max(silent - 1, 0)
-        index = (tick - whole) % 128
-        wanted = np.clip(
-            (1 - part) * history[index, columns] + part * history[index - 1, columns],
-            -p.peak_torque,
-            p.peak_torque,
-        )
-        thrust = max(np.sin(2 * np.pi * p.push_frequency * tick * control), 0.0) ** 6
-        data.xfrc_applied[root, :3] = plant.push * thrust
+        values = robot.control(tick, before + (after - before) * (within / hold))
         if tick >= 0:
-            recorded["encoder"][tick] = encoder
-            recorded["speed"][tick] = speed
-            recorded["motor_velocity"][tick] = spin
-            recorded["command"][tick] = fresh
-            recorded["drive_torque"][tick] = current
-            recorded["temperature"][tick] = p.start_temperature
-            recorded["base"][tick, :7], recorded["base"][tick, 7:] = data.qpos[:7], data.qvel[:3]
-            recorded["gyro"][tick] = data.sensordata[gyro : gyro + 3] + plant.gyro_bias
-            recorded["accelerometer"][tick] = (
-                data.sensordata[accelerometer : accelerometer + 3] + plant.accelerometer_bias
-            )
-            for number in range(data.ncon):
-                touch = data.contact[number]
-                pad = pad_of.get(touch.geom2, pad_of.get(touch.geom1))
-                if pad is not None:
-                    mujoco.mj_contactForce(model, data, number, wrench)
-                    force = touch.frame.reshape(3, 3).T @ wrench[:3]
-                    contact[tick, pad] += force if touch.geom2 in pad_of else -force
+            for name, value in (values | robot.sensed()).items():
+                recorded[name][tick] = value
         for _ in range(CONTROL_STEPS):
-            current = current + lag * (wanted - current)
-            q, qd = data.qpos[7:], data.qvel[6:]
-            taut = rotor - q @ matrix
-            pull = p.belt_stiffness * taut + p.belt_damping * (spin - qd @ matrix)
-            capacity = (
-                friction["coulomb"]
-                + (friction["static"] - friction["coulomb"])
-                * np.exp(-((qd / friction["stribeck_speed"]) ** 2))
-                + 1e-12
-            )
-            new = (bristles + h * qd / friction["bristle"]) / (
-                1 + h * np.abs(qd) * size / (friction["bristle"] * capacity)
-            )
-            held = size * (new + BRISTLE_DAMPING / h * (new - bristles)) + friction["viscous"] * qd
-            bristles = new
-            data.qfrc_applied[6:] = matrix @ pull - held - p.spring * (q - p.spring_rest)
-            spin = spin + h * inverse_rotor * (p.torque_scale * current - pull)
-            rotor = rotor + h * spin
-            mujoco.mj_step(model, data)
-        if data.qpos[2] < FALLEN or not np.isfinite(data.qpos[2]):
-            fell = True
+            robot.step()
+        if robot.fell:
             break
-    time = np.arange(count) * control
     return WalkingTrace(
-        time=time,
+        time=np.arange(count) * CONTROL,
         targets=targets,
-        contact=contact,
-        voltage=np.full(count, p.voltage),
-        fell=fell,
+        voltage=np.full(count, plant.drives.voltage),
+        fell=robot.fell,
         **recorded,
     )
+
+
+class _Walker:
+    """A robot, its drives, and where they are."""
+
+    def __init__(self, plant: WalkingPlant, chain: Chain, stand: Stand, seed: int) -> None:
+        import mujoco
+
+        model, drives = plant.model, plant.drives
+        self.plant, self.model, self.drives, self.stand = plant, model, drives, stand
+        self.data = data = mujoco.MjData(model)
+        n, m = drives.joint_from_motor.shape
+        joints = [model.joint(name) for name in chain.joints]
+        assert [joint.qposadr[0] for joint in joints] == list(range(7, 7 + n))
+        assert [joint.dofadr[0] for joint in joints] == list(range(6, 6 + n))
+        self.sides = _sides(model, chain)
+        self.root = model.body("pelvis").id
+        self.ankles = [model.body(f"{side}_foot").id for side in ("left", "right")]
+        self.pads = [model.geom(name).id for name in pad_names(model)]
+        self.allot = np.linalg.pinv(drives.declared)
+        self.inverse_rotor = 1.0 / drives.rotor_inertia
+        self.lag = -np.expm1(-STEP / np.maximum(drives.lag, 1e-6))
+        self.smooth = -np.expm1(-2 * np.pi * drives.velocity_bandwidth * CONTROL)
+        self.line = DelayLine(drives.delay[None], CONTROL)
+        self.dice, self.silent = np.random.default_rng(seed), 0
+        self.first = stand.targets(0.0, AHEAD, 0.0, 0.0, 0.0, self.sides)
+        data.qpos[7:] = self.first
+        mujoco.mj_kinematics(model, data)
+        data.qpos[2] -= min(data.geom_xpos[g, 2] - model.geom_size[g, 0] for g in self.pads)
+        mujoco.mj_forward(model, data)
+        self.rotor, self.spin = drives.joint_from_motor.T @ data.qpos[7:], np.zeros(m)
+        self.bristles, self.speed, self.current = np.zeros(n), np.zeros(n), np.zeros(m)
+        self.wanted = np.zeros(m)
+
+    def columns(self, n: int, m: int) -> dict[str, tuple[int, ...]]:
+        """Shapes of what is recorded at each tick."""
+        of_joints = dict.fromkeys(("encoder", "speed"), (n,))
+        of_motors = dict.fromkeys(
+            ("motor_velocity", "command", "drive_torque", "temperature"), (m,)
+        )
+        of_base = {"base": (10,), "gyro": (3,), "accelerometer": (3,)}
+        return {**of_joints, **of_motors, **of_base, "contact": (len(self.pads), 3)}
+
+    @property
+    def fell(self) -> bool:
+        """Whether the pelvis is too low, or nowhere."""
+        height = self.data.qpos[2]
+        return bool(height < FALLEN or not np.isfinite(height))
+
+    def asked(self, time: float) -> np.ndarray:
+        """Targets that the host sends, from how the robot stands `(n,)` [rad]."""
+        import mujoco
+
+        data, (left, right) = self.data, self.ankles
+        middle = 0.5 * (data.xpos[left, 0] + data.xpos[right, 0])
+        ahead = data.subtree_com[self.root, 0] - middle
+        mujoco.mj_subtreeVel(self.model, data)
+        speed = data.subtree_linvel[self.root, 0]
+        roll = _roll(data.qpos[3:7])
+        return self.stand.targets(time, ahead, speed, roll, data.qvel[3], self.sides)
+
+    def control(self, tick: int, target: np.ndarray) -> dict[str, np.ndarray]:
+        """Read the encoders, command the drives, push, and state what drives and encoders show."""
+        own, data = self.drives, self.data
+        encoder = data.qpos[7:] + own.offset + own.drift * max(tick * CONTROL, 0.0)
+        encoder = np.round(encoder / own.resolution) * own.resolution
+        self.speed = self.speed + self.smooth * (data.qvel[6:] - self.speed)
+        fresh = self.allot @ (own.stiffness * (target - encoder) - own.damping * self.speed)
+        chance = own.loss * CONTROL / (0.04 * (1 - own.loss))
+        if own.loss and self.silent == 0 and self.dice.random() < chance:
+            self.silent = 1 + int(self.dice.exponential(0.04) / CONTROL)
+        arrived = self.line.send(tick, fresh[None], np.array([[self.silent > 0]]))[0]
+        self.silent = max(self.silent - 1, 0)
+        self.wanted = np.clip(arrived, -own.peak_torque, own.peak_torque)
+        thrust = max(np.sin(2 * np.pi * own.push_frequency * tick * CONTROL), 0.0) ** 6
+        data.xfrc_applied[self.root, :3] = self.plant.push * thrust
+        return {
+            "encoder": encoder,
+            "speed": self.speed,
+            "motor_velocity": self.spin,
+            "command": fresh,
+            "drive_torque": self.current,
+            "temperature": own.start_temperature,
+        }
+
+    def sensed(self) -> dict[str, np.ndarray]:
+        """Base, IMU and the forces on the pads."""
+        data, model = self.data, self.model
+        gyro, accelerometer = (model.sensor(name).adr[0] for name in ("gyro", "accelerometer"))
+        return {
+            "base": np.concatenate([data.qpos[:7], data.qvel[:3]]),
+            "gyro": data.sensordata[gyro : gyro + 3] + self.plant.gyro_bias,
+            "accelerometer": data.sensordata[accelerometer : accelerometer + 3]
+            + self.plant.accelerometer_bias,
+            "contact": self.contact(),
+        }
+
+    def contact(self) -> np.ndarray:
+        """Force of the ground on each pad, in the world `(pads, 3)` [N]."""
+        import mujoco
+
+        forces, wrench = np.zeros((len(self.pads), 3)), np.zeros(6)
+        pad_of = {geom: place for place, geom in enumerate(self.pads)}
+        for number in range(self.data.ncon):
+            touch = self.data.contact[number]
+            pad = pad_of.get(touch.geom2, pad_of.get(touch.geom1))
+            if pad is not None:
+                mujoco.mj_contactForce(self.model, self.data, number, wrench)
+                force = touch.frame.reshape(3, 3).T @ wrench[:3]
+                forces[pad] += force if touch.geom2 in pad_of else -force
+        return forces
+
+    def step(self) -> None:
+        """One step of belts, rotors and friction, and of MuJoCo."""
+        import mujoco
+
+        own, matrix, data = self.drives, self.drives.joint_from_motor, self.data
+        self.current = self.current + self.lag * (self.wanted - self.current)
+        q, qd = data.qpos[7:], data.qvel[6:]
+        taut = self.rotor - q @ matrix
+        pull = own.belt_stiffness * taut + own.belt_damping * (self.spin - qd @ matrix)
+        data.qfrc_applied[6:] = (
+            matrix @ pull - self.friction(qd) - own.spring * (q - own.spring_rest)
+        )
+        torque = own.torque_scale * self.current - pull
+        self.spin = self.spin + STEP * self.inverse_rotor * torque
+        self.rotor = self.rotor + STEP * self.spin
+        mujoco.mj_step(self.model, data)
+
+    def friction(self, qd: np.ndarray) -> np.ndarray:
+        """LuGre friction of the joints after one step `(n,)` [Nm]."""
+        own, joints = self.drives, slice(len(self.spin), None)
+        coulomb, static, bristle = own.coulomb[joints], own.static[joints], own.bristle[joints]
+        size = np.maximum(static, 1e-9)
+        level = np.exp(-((qd / own.stribeck_speed[joints]) ** 2))
+        capacity = coulomb + (static - coulomb) * level + 1e-12
+        bristles = (self.bristles + STEP * qd / bristle) / (
+            1 + STEP * np.abs(qd) * size / (bristle * capacity)
+        )
+        rates = BRISTLE_DAMPING / STEP * (bristles - self.bristles)
+        self.bristles = bristles
+        return size * (bristles + rates) + own.viscous[joints] * qd
 
 
 def _roll(quaternion: np.ndarray) -> float:
