@@ -72,9 +72,18 @@ def described(node: ast.FunctionDef) -> set[str]:
 
 
 def undescribed(nodes: Iterable[ast.AST]) -> Iterator[str]:
-    """Public functions with arguments that their docstrings do not describe under `Args`."""
+    """Public functions with arguments that their docstrings do not describe under `Args`; methods
+    of private classes are not public.
+    """
+    nodes = tuple(nodes)
+    private = {
+        method
+        for node in nodes
+        if isinstance(node, ast.ClassDef) and node.name.startswith("_")
+        for method in node.body
+    }
     for node in nodes:
-        if not isinstance(node, ast.FunctionDef) or node.name.startswith("_"):
+        if not isinstance(node, ast.FunctionDef) or node.name.startswith("_") or node in private:
             continue
         decorators = {ast.unparse(one).split("(")[0].split(".")[-1] for one in node.decorator_list}
         every = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
