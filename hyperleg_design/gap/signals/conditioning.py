@@ -15,6 +15,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import KEPT_FROM
 from hyperleg_design.gap.model import friction, pads, rigid
+from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.model.supply import driven_by_duty, over_nominal
 from hyperleg_design.gap.signals import contact, transmission
@@ -30,7 +31,7 @@ from hyperleg_design.gap.signals.control import control_residual
 from hyperleg_design.gap.signals.ground import ground_residual
 from hyperleg_design.gap.signals.inertial import inertial_residuals
 from hyperleg_design.gap.signals.joint_motion import joint_motion
-from hyperleg_design.gap.signals.limit_cycle import limit_cycle
+from hyperleg_design.gap.signals.limit_cycle import LimitCycle, limit_cycle
 from hyperleg_design.gap.signals.sensed import sensed_velocity
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.smoothing import Smooth
@@ -89,26 +90,12 @@ def condition(log: Log, subject: Subject) -> Signals:
     limited = None if command is None else limited_torque(subject, command, speed, voltage, jump)
     believed, more = _believed(log, subject, measured, limited)
     notes += more
-    moved = motion.value, motion.first, motion.second
-    own = None if base is None else rigid.base_wrench(subject, *moved, base)
-    ground = contact.contacts(
-        log, subject, ticks, motion.value, base, None if own is None else own[:, :3]
-    )
-    needed = rigid.inverse_dynamics(subject, *moved, base)
     shaken = limit_cycle(
         resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step
     )
-    needed = needed + friction.friction_torque(
-        subject, motion.value, motion.first, None if shaken is None else shaken.speed
-    )
-    if ground.pad_force is not None:
-        rotation, force = None if base is None else base.rotation, np.nan_to_num(ground.pad_force)
-        pushed, wrench = pads.contact_torque(subject, motion.value, rotation, force)
-        needed = needed - pushed
-        if own is not None:
-            residual["base"] = np.where(
-                np.isfinite(ground.pad_force).all((1, 2))[:, None], wrench - own, np.nan
-            )
+    ground, needed, of_base = _needed(log, subject, ticks, motion, base, shaken)
+    if of_base is not None:
+        residual["base"] = of_base
     unknown = contact.unknown_rows(
         subject, ground, margin=int(np.ceil(_edge(motion, lacking) / step))
     )
@@ -162,6 +149,35 @@ def condition(log: Log, subject: Subject) -> Signals:
     if of_ground is not None:
         residual["ground"] = of_ground
     return signals
+
+
+def _needed(
+    log: Log,
+    subject: Subject,
+    ticks: np.ndarray,
+    motion: Smooth,
+    base: BaseMotion | None,
+    shaken: LimitCycle | None,
+) -> tuple[contact.Ground, np.ndarray, np.ndarray | None]:
+    """What the ground does, the torque that the joints need by the nominal model `(t, n)` [Nm], and
+    the residual of a floating base `(t, 6)` where the forces on its feet are known.
+    """
+    moved = motion.value, motion.first, motion.second
+    own = None if base is None else rigid.base_wrench(subject, *moved, base)
+    ground = contact.contacts(
+        log, subject, ticks, motion.value, base, None if own is None else own[:, :3]
+    )
+    needed = rigid.inverse_dynamics(subject, *moved, base) + friction.friction_torque(
+        subject, motion.value, motion.first, None if shaken is None else shaken.speed
+    )
+    if ground.pad_force is None:
+        return ground, needed, None
+    rotation, force = None if base is None else base.rotation, np.nan_to_num(ground.pad_force)
+    pushed, wrench = pads.contact_torque(subject, motion.value, rotation, force)
+    if own is None:
+        return ground, needed - pushed, None
+    known = np.isfinite(ground.pad_force).all((1, 2))
+    return ground, needed - pushed, np.where(known[:, None], wrench - own, np.nan)
 
 
 def _motor_speeds(
