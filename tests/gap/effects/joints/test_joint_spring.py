@@ -36,3 +36,14 @@ def test_people_read_the_angle_of_rest(pendulum):
     where = signals.position[:, 0]
     trace = SPRING.trace(signals, "swing", np.array([[2.0, 0.5]]))["motion"][0, :, 0]
     np.testing.assert_allclose(trace, 2.0 * (where - rest))
+
+
+def test_the_zero_of_a_torque_sensor_may_wander_more_than_springs_are_usual():
+    from hyperleg_design.gap.effects.strength import joint_strength
+    from hyperleg_design.gap.signals.loading import load_subject
+
+    subject = load_subject("hyperleg")
+    stiffness, preload = SPRING.session_spreads(subject, 0.005)["left_knee"]
+    knee = subject.joints.index("left_knee")
+    assert preload == 0.005 * joint_strength(subject)[knee]
+    assert stiffness < preload
