@@ -82,8 +82,8 @@ class Unexplained:
         for joint, times in self.ringing.items():
             text = (
                 f"is {times:.0f} times as large above the frequencies of its motion as in the "
-                f"references, and faults are lost in it: play that knocks, a loose part, or a "
-                f"control loop on the edge of stability"
+                f"references, and faults are lost in it: play that knocks, a belt that gives, a "
+                f"loose part, or a control loop on the edge of stability"
             )
             shapes.append(residual_shape("ringing", joint, text, 0.0))
         remainder = self.posterior.remainder
