@@ -13,7 +13,7 @@ import numpy as np
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.detectors.ringing import ringing
+from hyperleg_design.gap.inference.detectors.ringing import Ringing, ringing
 from hyperleg_design.gap.inference.gap_size import GapSize
 from hyperleg_design.gap.inference.posterior import Posterior, expanded
 from hyperleg_design.gap.inference.rules import InferenceRules
@@ -57,12 +57,12 @@ class Unexplained:
         return frequencies
 
     @cached_property
-    def ringing(self) -> dict[str, float]:
-        """Joints that ring and are in no limit cycle, and how many times as loud as before."""
+    def ringing(self) -> dict[str, Ringing]:
+        """Joints that ring and are in no limit cycle."""
         logs = self.evidence.samples.filtered_logs
         count = len(self.evidence.signals)
         over = ringing(logs[:count], logs[count:], self.rules.posterior.ringing)
-        return {joint: times for joint, times in over.items() if joint not in self.cycling}
+        return {joint: heard for joint, heard in over.items() if joint not in self.cycling}
 
     @property
     def hides_faults(self) -> bool:
@@ -79,11 +79,12 @@ class Unexplained:
                 f"stability"
             )
             shapes.append(residual_shape("limit cycle", joint, text, 0.0))
-        for joint, times in self.ringing.items():
+        for joint, heard in self.ringing.items():
             text = (
-                f"is {times:.0f} times as large above the frequencies of its motion as in the "
-                f"references, and faults are lost in it: play that knocks, a belt that gives, a "
-                f"loose part, or a control loop on the edge of stability"
+                f"is {heard.times:.0f} times as large above the frequencies of its motion as in "
+                f"the references, most at {heard.frequency:.0f} Hz, and faults are lost in it: "
+                f"play that knocks, a belt that gives, a loose part, or a control loop on the edge "
+                f"of stability"
             )
             shapes.append(residual_shape("ringing", joint, text, 0.0))
         remainder = self.posterior.remainder

@@ -9,16 +9,32 @@ every fault is lost then.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from scipy.signal import welch
 
 from hyperleg_design.gap.inference.white_noise import white_density
 from hyperleg_design.gap.signals.filtering import FilteredLog
 
+WINDOW = 1024
+"""Most ticks in a window of the spectrum in which the loudest frequency is looked up."""
+
+
+@dataclass(frozen=True)
+class Ringing:
+    """How loud a joint rings."""
+
+    times: float
+    """Root mean square of its residual of motion above the frequencies of the motion, in the
+    loudest log, over that in the loudest reference [-]."""
+    frequency: float
+    """Above those of the motion, at which this log is loudest [Hz]."""
+
 
 def ringing(
     tests: Sequence[FilteredLog], references: Sequence[FilteredLog], least: float
-) -> dict[str, float]:
+) -> dict[str, Ringing]:
     """Find the joints that ring in a log under test and in no reference.
 
     Args:
@@ -28,19 +44,33 @@ def ringing(
             `PosteriorRules.ringing` [-].
 
     Returns:
-        By joint, how many times as large its residual of motion is above the frequencies of the
-        motion, as a root mean square, in the loudest log as in the loudest reference, the loudest
-        joint first.
+        How loud each of these joints is, the loudest first.
     """
     quiet = [_densities(log) for log in references]
     loud = [_densities(log) for log in tests]
-    over: dict[str, float] = {}
+    over: dict[str, Ringing] = {}
     for joint in loud[0]:
-        own = max(density.get(joint, 0.0) for density in loud)
+        own = [density.get(joint, 0.0) for density in loud]
         before = max((density.get(joint, 0.0) for density in quiet), default=0.0)
-        if before > 0 and own > least * before:
-            over[joint] = float(np.sqrt(own / before))
-    return dict(sorted(over.items(), key=lambda entry: -entry[1]))
+        loudest = int(np.argmax(own))
+        if before > 0 and own[loudest] > least * before:
+            times = float(np.sqrt(own[loudest] / before))
+            over[joint] = Ringing(times, _loudest_frequency(tests[loudest], joint))
+    return dict(sorted(over.items(), key=lambda entry: -entry[1].times))
+
+
+def _loudest_frequency(log: FilteredLog, joint: str) -> float:
+    """Frequency above its cutoff at which a joint's residual of motion is largest [Hz]."""
+    row, mask = next(
+        (row, mask)
+        for row, mask in zip(log.rows, log.mask, strict=True)
+        if row.residual_name == "motion" and row.name == joint
+    )
+    values = np.where(mask, np.nan_to_num(log.signals.residual["motion"][:, row.column]), 0.0)
+    step = log.signals.step
+    frequency, density = welch(values, 1 / step, nperseg=min(WINDOW, len(values)))
+    above = frequency >= min(row.cutoff, 0.25 / step)
+    return float(frequency[above][np.argmax(density[above])])
 
 
 def _densities(log: FilteredLog) -> dict[str, float]:

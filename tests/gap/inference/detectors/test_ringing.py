@@ -1,6 +1,7 @@
 import diagnosed
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfilt
 
 from hyperleg_design.gap.inference.detectors.ringing import ringing
 from hyperleg_design.gap.inference.rules import PosteriorRules
@@ -37,10 +38,27 @@ def test_joints_that_shake_in_a_log_under_test_ring(filtered):
     loud = filtered(*(shaken(seed, 0.2) for seed in (0, 1)))
     over = ringing(loud, quiet, LOUD)
     assert over
-    assert list(over.values()) == sorted(over.values(), reverse=True)
-    assert all(np.sqrt(LOUD) < times < 25 for times in over.values())
+    times = [heard.times for heard in over.values()]
+    assert times == sorted(times, reverse=True)
+    assert all(np.sqrt(LOUD) < each < 25 for each in times)
     assert over.keys() <= ringing([*loud[:1], *quiet[:1]], quiet[1:], LOUD).keys()
     assert ringing(quiet, loud, LOUD) == {}
+
+
+def test_the_loudest_frequency_is_that_of_the_resonance(filtered):
+    """Noise that a resonance at 30 Hz amplifies, as a link that swings on its belt."""
+
+    def swinging(seed, size):
+        log = diagnosed.run("healthy", seed, session=f"run {seed}")
+        channel = "motor_torque/m_back"
+        band = butter(1, (27.0, 33.0), "band", fs=1 / log.step, output="sos")
+        noise = np.random.default_rng([6, seed]).normal(0, 1, len(log.time))
+        shaking = size * sosfilt(band, noise) + 0.005 * noise
+        return log.changed(signals={**log.signals, channel: log.column(channel) + shaking})
+
+    over = ringing(filtered(swinging(0, 3.0)), filtered(swinging(1, 0.0)), LOUD)
+    assert over
+    assert all(27 < heard.frequency < 33 for heard in over.values())
 
 
 def test_a_robot_that_rings_is_not_said_to_be_healthy(robot_files):
