@@ -4,6 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
+BESIDE, HIGHEST = 1.3, 0.3
+"""White noise is read off from so many times the cutoff on, but from so much of the sampling rate
+at most [-]: interpolation onto even ticks takes noise away near the Nyquist frequency."""
+
+
+def has_room(cutoff: float, step: float) -> bool:
+    """Tell whether a log has frequencies above those of its motion.
+
+    Args:
+        cutoff: frequency above which a row holds noise only [Hz].
+        step: of the ticks [s].
+    """
+    return BESIDE * cutoff <= HIGHEST / step
+
 
 def white_density(residual: np.ndarray, mask: np.ndarray, cutoff: float, step: float) -> float:
     """Estimate the density of a residual above its cutoff, by the median, which lines and leaks do
@@ -25,8 +39,7 @@ def white_density(residual: np.ndarray, mask: np.ndarray, cutoff: float, step: f
     third = np.diff(np.interp(np.arange(known[0], known[-1] + 1), known, residual[known]), 3)
     power = np.abs(np.fft.rfft(third * np.hanning(len(third)))) ** 2
     frequency = np.fft.rfftfreq(len(third), step)
-    # interpolation onto even ticks takes noise away near the Nyquist frequency
-    first = min(1.3 * cutoff, 0.3 / step)
+    first = min(BESIDE * cutoff, HIGHEST / step)
     high = (frequency > first) & (frequency < min(2 * first, 0.45 / step))
     if high.sum() < 8:
         return 0.0

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import welch
 
-from hyperleg_design.gap.inference.white_noise import white_density
+from hyperleg_design.gap.inference.white_noise import has_room, white_density
 from hyperleg_design.gap.signals.filtering import FilteredLog
 
 WINDOW = 1024
@@ -49,7 +49,7 @@ def ringing(
     quiet = [_densities(log) for log in references]
     loud = [_densities(log) for log in tests]
     over: dict[str, Ringing] = {}
-    for joint in loud[0]:
+    for joint in dict.fromkeys(joint for density in loud for joint in density):
         own = [density.get(joint, 0.0) for density in loud]
         before = max((density.get(joint, 0.0) for density in quiet), default=0.0)
         loudest = int(np.argmax(own))
@@ -74,10 +74,12 @@ def _loudest_frequency(log: FilteredLog, joint: str) -> float:
 
 
 def _densities(log: FilteredLog) -> dict[str, float]:
-    """By joint, the density of its residual of motion above its cutoff [unit^2/Hz]."""
+    """By joint, the density of its residual of motion above its cutoff [unit^2/Hz]; not of joints
+    whose motion goes up to what the log's rate can show.
+    """
     densities = {}
     for row, mask in zip(log.rows, log.mask, strict=True):
-        if row.residual_name == "motion":
+        if row.residual_name == "motion" and has_room(row.cutoff, log.signals.step):
             residual = log.signals.residual["motion"][:, row.column]
             values = np.where(mask, np.nan_to_num(residual), 0.0)
             densities[row.name] = white_density(values, mask, row.cutoff, log.signals.step)

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import diagnosed
 import numpy as np
 import pytest
@@ -67,3 +69,13 @@ def test_a_robot_that_rings_is_not_said_to_be_healthy(robot_files):
     result = diagnose(robot_files["coupled"], logs, references, threads=1)
     assert result.verdict == "unknown"
     assert any(shape["shape"] == "ringing" for shape in result.residual_shape)
+
+
+def test_motion_up_to_the_rate_of_a_log_is_no_ringing(filtered):
+    """Where nothing is above the motion, what looks loud there is the motion itself."""
+    quiet, loud = filtered(shaken(2, 0.01), shaken(0, 0.2))
+    assert ringing([loud], [quiet], LOUD)
+    highest = 0.3 / (1.3 * loud.signals.step)
+    filled = replace(loud, rows=tuple(replace(row, cutoff=1.01 * highest) for row in loud.rows))
+    assert ringing([filled], [quiet], LOUD) == {}
+    assert ringing([filled, loud], [quiet], LOUD) == ringing([loud], [quiet], LOUD)
