@@ -157,7 +157,9 @@ def compared(first: pd.DataFrame, other: pd.DataFrame) -> dict[str, float]:
     both = np.isfinite(own) & np.isfinite(theirs)
     enough = int(both.sum()) > 1
     ratios = {
-        f"{name}_ratio": float(np.median((first[column] / other[column]).to_numpy(float)[both]))
+        f"{name}_ratio": float(
+            np.median(first[column].to_numpy(float)[both] / other[column].to_numpy(float)[both])
+        )
         if enough
         else float("nan")
         for name, column in (("cost", COST), ("time", TIME))
