@@ -18,6 +18,8 @@ NOTHING_LEFT = 0.995
 
 MOST_SIZED = 2
 """Causes that a sentence tells with their sizes; an effect at many places counts as one."""
+HIDES = ("limit cycle", "ringing")
+"""Shapes of residuals in which faults are lost."""
 NEAREST = 0.1
 """Probability from which the nearest rival of an unknown gap is mentioned beside the verdict."""
 
@@ -122,6 +124,17 @@ def verdict_sentence(diagnosis: Entry) -> str:
     where = joined(places_of(diagnosis)[:2])
     if verdict == "none":
         return "These logs show no gap between robot and model."
+    hidden = [
+        str(shape["location"])
+        for shape in diagnosis.get("residual_shape", ())
+        if shape["shape"] in HIDES
+    ]
+    if verdict == "unknown" and hidden and diagnosis["gap"]["before"] <= diagnosis["gap"]["floor"]:
+        plural = len(hidden) > 1
+        return (
+            f"{joined(hidden)} {'ring or swing' if plural else 'rings or swings'} as in no "
+            "reference, and whatever else is wrong is lost in it."
+        )
     if verdict == "unknown" or not causes:
         return (
             f"There is a gap{f' at {where}' if where else ''}, and no effect of the catalogue "
@@ -155,10 +168,21 @@ def phrase(causes: Sequence[Entry]) -> str:
 
 
 def _size(group: Sequence[Entry]) -> str:
-    """The first size of some causes of one effect, in parentheses; empty where they have none."""
-    for value in cause_row(*group).values:
-        if value.interval:
-            return f" ({value.name} {value.value})"
+    """The first size of some causes of one effect that is clearly there, or else the first one, in
+    parentheses; empty where they have none.
+    """
+    effect = EFFECTS.get(str(group[0]["effect"]))
+    nulls = {} if effect is None else {p.name: p.null for p in effect.parameters}
+    sizes = [
+        (span, value)
+        for span, value in zip(spans(group), cause_row(*group).values, strict=False)
+        if value.interval
+    ]
+    clear = [
+        value for span, value in sizes if not span.low <= nulls.get(span.name, 0.0) <= span.high
+    ]
+    for value in (*clear, *(value for _, value in sizes)):
+        return f" ({value.name} {value.value})"
     return ""
 
 

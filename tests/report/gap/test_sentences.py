@@ -47,6 +47,24 @@ def test_one_effect_at_several_places_is_said_once() -> None:
     )
 
 
+def test_the_size_that_is_clearly_there_is_told() -> None:
+    pulled = cause("joint_spring", "wrist", stiffness=(0.002, "Nm/rad"), preload=(-0.06, "Nm"))
+    pulled["parameters"]["stiffness"] |= {"low": 0.0, "high": 0.02}
+    pulled["parameters"]["preload"] |= {"low": -0.07, "high": -0.05}
+    assert phrase([pulled]) == "joint spring at wrist (preload -0.06 Nm)"
+    pulled["parameters"]["preload"] |= {"high": 0.01}
+    assert phrase([pulled]) == "joint spring at wrist (stiffness 0.002 Nm/rad)"
+
+
+def test_where_a_joint_rings_no_gap_beyond_the_noise_is_claimed() -> None:
+    rings = [{"shape": "ringing", "location": name, "says": ""} for name in ("hip", "knee")]
+    gap = {"before": 0.1, "floor": 0.1}
+    ringing = diagnosis("unknown", [], residual_shape=rings, gap=gap)
+    assert verdict_sentence(ringing).startswith("hip and knee ring or swing as in no reference")
+    beyond = diagnosis("unknown", [], residual_shape=rings, gap=gap | {"before": 0.2})
+    assert verdict_sentence(beyond).startswith("There is a gap")
+
+
 def test_each_verdict_is_one_sentence() -> None:
     assert verdict_sentence(diagnosis("none", [])).endswith("no gap between robot and model.")
     unknown = diagnosis("unknown", [], where=[{"location": "a", "regime": "all", "share": 1.0}])
