@@ -18,6 +18,7 @@ import numpy as np
 
 from hyperleg_design.validation.blind.plants.parts import (
     DelayLine,
+    Drives,
     HostTargets,
     Ripple,
     UnlistedForces,
@@ -205,22 +206,12 @@ class _Controllers:
         return arrived
 
 
-class _Drives:
+class _Drives(Drives):
     """Windings under a supply that sags, and motors that lose torque as they warm up."""
 
     def __init__(self, plants: Sequence[RigPlant]) -> None:
-        self.peak, self.stall = stacked(plants, "peak_torque"), stacked(plants, "stall_torque")
-        self.droop = self.stall / stacked(plants, "no_load_speed")
-        self.nominal = stacked(plants, "voltage")[:, None]
-        self.supply = stacked(plants, "supply")[:, None]
-        self.resistance = stacked(plants, "supply_resistance")[:, None]
-        self.heat = stacked(plants, "power_constant")
-        self.thermal_resistance = stacked(plants, "thermal_resistance")
-        self.thermal_time = stacked(plants, "thermal_time")
-        self.temperature = stacked(plants, "start_temperature")
-        self.scale, self.derating = stacked(plants, "torque_scale"), stacked(plants, "derating")
+        super().__init__(plants)
         self.follow = 1.0 / np.maximum(stacked(plants, "lag"), 2 * STEP)
-        self.bus = np.broadcast_to(self.supply, self.supply.shape).copy()
         self.torque = self.given = self.wanted = np.zeros(self.peak.shape)
 
     def receive(self, wanted: np.ndarray, spin: np.ndarray) -> None:

@@ -78,6 +78,23 @@ class DelayLine:
         )
 
 
+class Drives:
+    """What drives of both rigs have: limits, a supply that sags, and motors that warm up."""
+
+    def __init__(self, plants: Sequence[RigPlant]) -> None:
+        self.peak, self.stall = stacked(plants, "peak_torque"), stacked(plants, "stall_torque")
+        self.droop = self.stall / stacked(plants, "no_load_speed")
+        self.nominal = stacked(plants, "voltage")[:, None]
+        self.supply = stacked(plants, "supply")[:, None]
+        self.resistance = stacked(plants, "supply_resistance")[:, None]
+        self.heat = stacked(plants, "power_constant")
+        self.thermal_resistance = stacked(plants, "thermal_resistance")
+        self.thermal_time = stacked(plants, "thermal_time")
+        self.temperature = stacked(plants, "start_temperature")
+        self.scale, self.derating = stacked(plants, "torque_scale"), stacked(plants, "derating")
+        self.bus = np.broadcast_to(self.supply, self.supply.shape).copy()
+
+
 class UnlistedForces:
     """Torques at the joints that no effect of the catalogue makes, and its linear spring."""
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from hyperleg_design.validation.blind.plants.parts import (
     DelayLine,
+    Drives,
     HostTargets,
     Ripple,
     UnlistedForces,
@@ -188,24 +189,14 @@ class _Controllers:
         return np.asarray((joint[:, None] @ self.to_motor)[:, 0])
 
 
-class _Drives:
+class _Drives(Drives):
     """Torque loops of first order within an envelope, under a supply that sags, and motors that
     lose torque as they warm up.
     """
 
     def __init__(self, plants: Sequence[RigPlant]) -> None:
-        self.peak, self.stall = stacked(plants, "peak_torque"), stacked(plants, "stall_torque")
-        self.droop = self.stall / stacked(plants, "no_load_speed")
-        self.nominal = stacked(plants, "voltage")[:, None]
-        self.supply = stacked(plants, "supply")[:, None]
-        self.resistance = stacked(plants, "supply_resistance")[:, None]
-        self.heat = stacked(plants, "power_constant")
-        self.thermal_resistance = stacked(plants, "thermal_resistance")
-        self.thermal_time = stacked(plants, "thermal_time")
-        self.temperature = stacked(plants, "start_temperature")
-        self.scale, self.derating = stacked(plants, "torque_scale"), stacked(plants, "derating")
+        super().__init__(plants)
         self.lag = -np.expm1(-STEP / np.maximum(stacked(plants, "lag"), 1e-6))
-        self.bus = np.broadcast_to(self.supply, self.supply.shape).copy()
         self.current, self.given = np.zeros(self.peak.shape), np.zeros(self.peak.shape)
 
     def receive(self, wanted: np.ndarray, spin: np.ndarray) -> None:
