@@ -4,6 +4,7 @@ that the catalogue lacks, and channels that are left larger or noisier than a he
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -13,6 +14,8 @@ import numpy as np
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
+from hyperleg_design.gap.inference.channels.channel import Channel
+from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.detectors.ringing import Ringing, ringing
 from hyperleg_design.gap.inference.gap_size import GapSize
 from hyperleg_design.gap.inference.posterior import Posterior, expanded
@@ -21,8 +24,8 @@ from hyperleg_design.gap.inference.unlisted import excess_noise, scatter
 from hyperleg_design.gap.results.diagnosis import residual_shape
 from hyperleg_design.gap.signals.signals import Signals
 
-SCATTERS = "scatter"
-"""Name of noise that is larger than in the references, in `Diagnosis.residual_shape`."""
+CYCLES, RINGS = HIDING = "limit cycle", "ringing"
+"""Names in `Diagnosis.residual_shape` of what faults are lost in."""
 MOST_CHANNELS = 3
 """Channels that are named where no listed effect says why they are larger or noisier."""
 
@@ -78,7 +81,7 @@ class Unexplained:
                 f"folds there), which nothing commands: its control loop is on the edge of "
                 f"stability"
             )
-            shapes.append(residual_shape("limit cycle", joint, text, 0.0))
+            shapes.append(residual_shape(CYCLES, joint, text, 0.0))
         for joint, heard in self.ringing.items():
             text = (
                 f"is {heard.times:.0f} times as large above the frequencies of its motion as in "
@@ -86,12 +89,12 @@ class Unexplained:
                 f"play that knocks, a belt that gives, a loose part, or a control loop on the edge "
                 f"of stability"
             )
-            shapes.append(residual_shape("ringing", joint, text, 0.0))
+            shapes.append(residual_shape(RINGS, joint, text, 0.0))
         remainder = self.posterior.remainder
         for cause, text in self.unlisted_causes:
             if not cause.standing:
                 shapes.append(residual_shape(cause.effect, cause.location, text, remainder))
-        return (*shapes, *self._larger(), *self._noisier(), *self._scattering())
+        return (*shapes, *self._larger(), *self._noisier())
 
     def _larger(self) -> list[dict[str, Any]]:
         """Channels of which the causes leave more than a healthy robot does."""
@@ -110,48 +113,42 @@ class Unexplained:
         return shapes
 
     def _noisier(self) -> list[dict[str, Any]]:
-        """Channels with noise that no healthy robot has, the noisiest first."""
-        times = [
-            excess_noise(channel, scales, self.rules)
-            for channel, scales in zip(
-                self.evidence.channels, self.posterior.hypothesis.scales, strict=True
-            )
-        ]
+        """Channels with noise that no healthy robot has, the noisiest first; of an answer of `none`
+        those that scatter more than in the references, as that is all there is to say then.
+        """
         usual = "the references" if self.evidence.references else "healthy robots"
         shapes = []
-        for place in np.argsort([-t for t in times], kind="stable").tolist()[:MOST_CHANNELS]:
-            if times[place] <= 1 or self.posterior.remainder <= 0:
-                continue
-            channel = self.evidence.channels[place]
-            text = (
-                f"the {channel.residual} residual of {channel.name} scatters up to "
-                f"{times[place]:.2g} times as much as in {usual}, in a way that follows no listed "
-                f"effect: look for play, a loose part, something that pushes, or a disturbed signal"
-            )
-            shapes.append(residual_shape("noise", channel.name, text, 0.0))
-        return shapes
-
-    def _scattering(self) -> list[dict[str, Any]]:
-        """Channels that scatter more than in the references, where that is all there is to say."""
-        if self.posterior.verdict != "none":
-            return []
-        times = [
-            scatter(channel, scales, self.rules)
-            for channel, scales in zip(
-                self.evidence.channels, self.posterior.hypothesis.scales, strict=True
-            )
-        ]
-        shapes = []
-        for place in np.argsort([-t for t in times], kind="stable").tolist()[:MOST_CHANNELS]:
-            if times[place] > 1:
-                channel = self.evidence.channels[place]
+        if self.posterior.remainder > 0:
+            for channel, times in self._noisiest(excess_noise):
+                text = (
+                    f"the {channel.residual} residual of {channel.name} scatters up to "
+                    f"{times:.2g} times as much as in {usual}, in a way that follows no listed "
+                    f"effect: look for play, a loose part, something that pushes, or a disturbed "
+                    f"signal"
+                )
+                shapes.append(residual_shape("noise", channel.name, text, 0.0))
+        if self.posterior.verdict == "none":
+            for channel, times in self._noisiest(scatter):
                 text = (
                     f"the {channel.residual} residual of {channel.name} scatters "
-                    f"{times[place]:.2g} times as much as in the references, in a way that follows "
+                    f"{times:.2g} times as much as in the references, in a way that follows "
                     f"no listed effect, as a healthy robot's does now and then"
                 )
-                shapes.append(residual_shape(SCATTERS, channel.name, text, 0.0))
+                shapes.append(residual_shape("scatter", channel.name, text, 0.0))
         return shapes
+
+    def _noisiest(
+        self, ratio: Callable[[Channel, Scales, InferenceRules], float]
+    ) -> list[tuple[Channel, float]]:
+        """The channels with the largest ratios above 1, at most `MOST_CHANNELS`."""
+        channels = self.evidence.channels
+        scales = self.posterior.hypothesis.scales
+        over = [
+            (channel, times)
+            for channel, own in zip(channels, scales, strict=True)
+            if (times := ratio(channel, own, self.rules)) > 1
+        ]
+        return sorted(over, key=lambda entry: -entry[1])[:MOST_CHANNELS]
 
 
 def _cycles(signals: Signals) -> dict[str, float]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.pipeline.unexplained import HIDING
 from hyperleg_design.report.gap.alike import places, span_text, spans, together
 from hyperleg_design.report.gap.run import Run
 from hyperleg_design.report.gap.text import beyond_references
@@ -18,8 +19,6 @@ NOTHING_LEFT = 0.995
 
 MOST_SIZED = 2
 """Causes that a sentence tells with their sizes; an effect at many places counts as one."""
-HIDES = ("limit cycle", "ringing")
-"""Shapes of residuals in which faults are lost."""
 NEAREST = 0.1
 """Probability from which the nearest rival of an unknown gap is mentioned beside the verdict."""
 
@@ -127,7 +126,7 @@ def verdict_sentence(diagnosis: Entry) -> str:
     hidden = [
         str(shape["location"])
         for shape in diagnosis.get("residual_shape", ())
-        if shape["shape"] in HIDES
+        if shape["shape"] in HIDING
     ]
     if verdict == "unknown" and hidden and diagnosis["gap"]["before"] <= diagnosis["gap"]["floor"]:
         plural = len(hidden) > 1

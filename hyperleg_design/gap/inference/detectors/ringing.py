@@ -8,14 +8,14 @@ every fault is lost then.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.signal import welch
 
 from hyperleg_design.gap.inference.white_noise import has_room, white_density
-from hyperleg_design.gap.signals.filtering import FilteredLog
+from hyperleg_design.gap.signals.filtering import FilteredLog, Row
 
 WINDOW = 1024
 """Most ticks in a window of the spectrum in which the loudest frequency is looked up."""
@@ -61,12 +61,7 @@ def ringing(
 
 def _loudest_frequency(log: FilteredLog, joint: str) -> float:
     """Frequency above its cutoff at which a joint's residual of motion is largest [Hz]."""
-    row, mask = next(
-        (row, mask)
-        for row, mask in zip(log.rows, log.mask, strict=True)
-        if row.residual_name == "motion" and row.name == joint
-    )
-    values = np.where(mask, np.nan_to_num(log.signals.residual["motion"][:, row.column]), 0.0)
+    row, _, values = next(entry for entry in _of_motion(log) if entry[0].name == joint)
     step = log.signals.step
     frequency, density = welch(values, 1 / step, nperseg=min(WINDOW, len(values)))
     above = frequency >= min(row.cutoff, 0.25 / step)
@@ -77,10 +72,16 @@ def _densities(log: FilteredLog) -> dict[str, float]:
     """By joint, the density of its residual of motion above its cutoff [unit^2/Hz]; not of joints
     whose motion goes up to what the log's rate can show.
     """
-    densities = {}
+    return {
+        row.name: white_density(values, mask, row.cutoff, log.signals.step)
+        for row, mask, values in _of_motion(log)
+        if has_room(row.cutoff, log.signals.step)
+    }
+
+
+def _of_motion(log: FilteredLog) -> Iterator[tuple[Row, np.ndarray, np.ndarray]]:
+    """Rows of the residual of motion, their known ticks, and values that are zero elsewhere."""
     for row, mask in zip(log.rows, log.mask, strict=True):
-        if row.residual_name == "motion" and has_room(row.cutoff, log.signals.step):
+        if row.residual_name == "motion":
             residual = log.signals.residual["motion"][:, row.column]
-            values = np.where(mask, np.nan_to_num(residual), 0.0)
-            densities[row.name] = white_density(values, mask, row.cutoff, log.signals.step)
-    return densities
+            yield row, mask, np.where(mask, np.nan_to_num(residual), 0.0)

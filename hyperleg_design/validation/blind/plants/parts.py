@@ -98,23 +98,15 @@ class Drives:
 class UnlistedForces:
     """Torques at the joints that no effect of the catalogue makes, and its linear spring."""
 
-    NAMES = ("spring", "hysteresis", "push", "hardening", "coupling", "drag")
-
     def __init__(self, plants: Sequence[RigPlant], step: float) -> None:
-        for name in (*self.NAMES, "spring_rest", "rest"):
-            setattr(self, name, stacked(plants, name))
+        self.spring, self.spring_rest = stacked(plants, "spring"), stacked(plants, "spring_rest")
+        self.hysteresis, self.push = stacked(plants, "hysteresis"), stacked(plants, "push")
+        self.hardening, self.coupling = stacked(plants, "hardening"), stacked(plants, "coupling")
+        self.drag, self.rest = stacked(plants, "drag"), stacked(plants, "rest")
         self.frequency = stacked(plants, "push_frequency")[:, None]
-        self.act = any(getattr(self, name).any() for name in self.NAMES)
+        sizes = (self.spring, self.hysteresis, self.push, self.hardening, self.coupling, self.drag)
+        self.act = any(size.any() for size in sizes)
         self.step, self.memory = step, np.zeros(self.rest.shape)
-
-    spring: np.ndarray
-    spring_rest: np.ndarray
-    hysteresis: np.ndarray
-    push: np.ndarray
-    hardening: np.ndarray
-    coupling: np.ndarray
-    drag: np.ndarray
-    rest: np.ndarray
 
     def beside(
         self, torque: np.ndarray | float, time: float, q: np.ndarray, qd: np.ndarray
