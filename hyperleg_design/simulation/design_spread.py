@@ -17,6 +17,7 @@ import numpy as np
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot.names import LAYOUTS
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
 from hyperleg_design.simulation.drives.actuation import motor_friction
@@ -47,6 +48,8 @@ class DesignSpread:
     """Designs for checks, drawn from the same ranges and never trained on."""
     held_out_seed: int = 1000
     """Of the designs for checks, other than `seed`."""
+    variants: tuple[str, ...] = ()
+    """Toe layouts that the ranges are meant for, of `LAYOUTS`; any robot where empty."""
 
     def to_mapping(self) -> dict[str, Any]:
         """Write the spread as JSON takes it.
@@ -54,7 +57,12 @@ class DesignSpread:
         Returns:
             Nested mappings.
         """
-        return {**dataclasses.asdict(self), "ranges": self.ranges.to_mapping()}
+        variants = list(self.variants)
+        return {
+            **dataclasses.asdict(self),
+            "ranges": self.ranges.to_mapping(),
+            "variants": variants,
+        }
 
     def designs(self, base: RobotDesign) -> RobotDesign:
         """Draw the pool of designs for training.
@@ -64,7 +72,12 @@ class DesignSpread:
 
         Returns:
             A batch of `pool` designs.
+
+        Raises:
+            InputError: another toe layout than the ranges are meant for, a leaf that the robot
+                lacks, or too few robots in the ranges.
         """
+        self._check_variant(base)
         return _drawn(base, self.ranges, self.pool, self.seed)
 
     def held_out_designs(self, base: RobotDesign) -> RobotDesign:
@@ -75,7 +88,11 @@ class DesignSpread:
 
         Returns:
             A batch of `held_out` designs.
+
+        Raises:
+            InputError: as in `designs`.
         """
+        self._check_variant(base)
         return _drawn(base, self.ranges, self.held_out, self.held_out_seed)
 
     def check_robot(self, base: RobotDesign, physics: Physics) -> None:
@@ -98,6 +115,15 @@ class DesignSpread:
                 f"leave out {', '.join(idle)}"
             )
             raise InputError("design ranges", idle[0], None, remedy)
+
+    def _check_variant(self, base: RobotDesign) -> None:
+        if self.variants and base.variant not in self.variants:
+            raise InputError(
+                "design ranges",
+                "variants",
+                list(self.variants),
+                f"expects a robot of one of these toe layouts, not {base.variant or base.name}",
+            )
 
     def _has_effect(self, path: str, base: RobotDesign, physics: Physics) -> bool:
         bounds = self.ranges.ranges[path]
@@ -151,17 +177,26 @@ def design_spread(data: Mapping[str, Any], where: str) -> DesignSpread:
     Raises:
         InputError: unknown or missing field, or a value that makes no sense.
     """
-    values = {key: value for key, value in data.items() if key not in ("description", "ranges")}
+    texts = ("description", "ranges", "variants")
+    values = {key: value for key, value in data.items() if key not in texts}
     for key, value in values.items():
         if key not in _WHOLE:
             raise InputError(
-                where, str(key), value, parameters.unknown(str(key), ["ranges", *_WHOLE])
+                where,
+                str(key),
+                value,
+                parameters.unknown(str(key), ["ranges", "variants", *_WHOLE]),
             )
         low, high = _WHOLE[key]
         whole = isinstance(value, int) and not isinstance(value, bool)
         if not whole or not low <= value <= high:
             raise InputError(where, key, value, f"expects a whole number, {low:g} .. {high:g}")
-    spread = DesignSpread(ranges=design_ranges(data.get("ranges"), f"{where}: ranges"), **values)
+    variants = data.get("variants", [])
+    if not isinstance(variants, list) or not all(v in LAYOUTS for v in variants):
+        remedy = f"expects a list of {', '.join(LAYOUTS)}"
+        raise InputError(where, "variants", variants, remedy)
+    ranges = design_ranges(data.get("ranges"), f"{where}: ranges")
+    spread = DesignSpread(ranges=ranges, variants=tuple(variants), **values)
     if spread.seed == spread.held_out_seed:
         raise InputError(
             where, "held_out_seed", spread.seed, "must differ from seed, or checks see the pool"

@@ -31,8 +31,16 @@ def test_shipped_designs_are_inside_their_ranges(design: str, ranges: str) -> No
     assert np.abs(spread.ranges.numbers(drawn)).max() <= 1
 
 
+@pytest.mark.parametrize(("design", "ranges"), [("toe", "no_toe"), ("toe_removed", "toe")])
+def test_ranges_of_another_toe_layout_are_refused(design: str, ranges: str) -> None:
+    base, spread = load_design(design), load_design_spread(ranges)
+    for draw in (spread.designs, spread.held_out_designs):
+        with pytest.raises(InputError, match=f"these toe layouts, not {design}"):
+            draw(base)
+
+
 def test_what_is_written_down_is_what_was_read() -> None:
-    spread = design_spread(DATA, "file")
+    spread = design_spread({**DATA, "variants": ["toe"]}, "file")
     assert design_spread(spread.to_mapping(), "file") == spread
 
 
@@ -45,6 +53,8 @@ def test_what_is_written_down_is_what_was_read() -> None:
         ({"pool": True}, "pool"),
         ({"seed": 1000}, "held_out_seed"),
         ({"ranges": {}}, ""),
+        ({"variants": ["no_toe"]}, "variants"),
+        ({"variants": "toe"}, "variants"),
         ({"ranges": {"toe.mass": {"low": 0}}}, "toe.mass"),
     ],
 )
