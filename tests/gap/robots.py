@@ -158,6 +158,25 @@ def servo_run(text: str, target, duration: float, rate: float = 200.0, **metadat
     return Log("run", table[:, 0], signals, Metadata(**metadata))
 
 
+def with_torque_sensors(log: Log) -> Log:
+    """Log of `COUPLED` with torque sensors between gears and links, and with commands in place of
+    measured motor torques.
+    """
+    matrix, rotor, damping = np.array([[6.0, 6.0], [-4.0, 4.0]]), 0.002, np.array([0.05, 0.03])
+    given = log.stack("motor_torque", ("m_front", "m_back"))
+    velocity = log.stack("velocity", ("hip", "knee"))
+    acceleration = np.gradient(velocity, log.time, axis=0)
+    held = (given - rotor * acceleration @ matrix) @ matrix.T - damping * velocity
+    signals = {k: v for k, v in log.signals.items() if not k.startswith("motor_torque")}
+    signals |= {"joint_torque/hip": held[:, 0], "joint_torque/knee": held[:, 1]}
+    signals |= {
+        "motor_torque_command/m_front": given[:, 0],
+        "motor_torque_command/m_back": given[:, 1],
+    }
+    metadata = log.metadata.changed(torque_sensors=("hip", "knee"))
+    return log.changed(signals=signals, metadata=metadata)
+
+
 def waves(count: int, amplitude, slow: float = 0.2, fast: float = 1.5, seed: int = 0):
     """Sums of three sines for each of some channels, starting smoothly from zero."""
     rng = np.random.default_rng(seed)

@@ -10,7 +10,8 @@ motion alone, which trusts the measurement. Of motors whose torque nobody measur
 the command, and the same change shows there, as `-M d`.
 
 A measured torque counts as what the drive takes itself to give, as current times a declared
-constant is; so do joint torques.
+constant is; so do joint torques, unless a sensor between gear and link measures them. Then the
+constant, cogging, rotors and friction lie before the measurement, too, and only the links after it.
 """
 
 from __future__ import annotations
@@ -64,9 +65,27 @@ def at_joint(signals: Signals, joint: int, torque: np.ndarray) -> dict[str, np.n
     return {"motion": rows.swapaxes(1, 2)}
 
 
+def resisting(signals: Signals, torque: np.ndarray) -> dict[str, np.ndarray]:
+    """Trace of torques that friction and rotors take at the joints, beyond the model.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        torque: `(..., t, n)` [Nm].
+
+    Returns:
+        The trace by name of the residual.
+    """
+    behind = signals.behind_gears
+    if behind is None or not torque[..., behind].any():
+        return {"motion": torque}
+    drive = -np.where(behind, torque, 0.0) @ signals.subject.motor_from_joint.T
+    rest = np.where(behind, 0.0, torque)
+    return {"drive": drive, "motion": rest} if rest.any() else {"drive": drive}
+
+
 def at_motor(signals: Signals, motor: int, torque: np.ndarray) -> dict[str, np.ndarray]:
-    """Trace of a torque that is lost between a motor's measured torque and the joints, on the
-    motor's side `(k, t)` [Nm].
+    """Trace of a torque that is lost between a motor and the joints, on the motor's side `(k, t)`
+    [Nm].
 
     Args:
         signals: a conditioned log, `t` ticks.
@@ -76,6 +95,8 @@ def at_motor(signals: Signals, motor: int, torque: np.ndarray) -> dict[str, np.n
     Returns:
         The trace by name of the residual.
     """
+    if signals.sensed_behind[motor]:
+        return before_measurement(signals, {motor: -torque})
     rows = _rows(torque, len(signals.subject.joints))
     _add(rows, signals, motor, torque)
     return {"motion": rows.swapaxes(1, 2)}
@@ -180,6 +201,11 @@ def given(signals: Signals, motor: int) -> np.ndarray:
         The torque `(t,)` [Nm].
     """
     believed = signals.believed[:, motor]
+    if signals.before_sensors is not None and signals.sensed_behind[motor]:
+        asked = is_commanded(signals, motor)
+        if asked:
+            return limited(signals, motor, commanded(signals, motor))
+        return believed + signals.before_sensors[:, motor]
     parts = _spring_and_damper(signals, motor)
     if parts is None:
         return believed

@@ -156,10 +156,28 @@ def factors_of(
     row = samples.motion_row(joint)
     if row is None or (not scaling.scales_measured and samples.measures(motor)):
         return ()
+    if values is not None and not _moves(samples, scaling, location, values, joint):
+        return ()
     number = float(samples.share[samples.row == row].sum())
     slopes = [_slope(s.signals, scaling, motor, joint) for s in samples.filtered_logs]
     slope = usual[0] * np.concatenate(slopes)[None]
     return (Factor(0, slope, number, _shows(samples, row, motor, joint), row),)
+
+
+def _moves(
+    samples: Samples, scaling: Effect, location: str, values: np.ndarray, joint: int
+) -> bool:
+    """Whether an effect at a motor shows in the motion of a joint, as it does unless the torque is
+    measured behind the gear.
+    """
+    logs = [log.signals for log in samples.filtered_logs]
+    if all(signals.behind_gears is None for signals in logs):
+        return True
+    usual = scaling.usual(location, logs[0].subject)
+    shape = [parameter.shape for parameter in scaling.parameters]
+    tried = np.where(shape, values, values + usual)[None]
+    traces = (scaling.trace(signals, location, tried).get("motion") for signals in logs)
+    return any(trace is not None and np.nan_to_num(trace[..., joint]).any() for trace in traces)
 
 
 def held_back_in_all(

@@ -124,8 +124,12 @@ def _sinking(filtered_log: FilteredLog, row: int) -> np.ndarray:
 
 def _turning(filtered_log: FilteredLog, row: int) -> np.ndarray:
     """How much of a joint's friction turns over at each tick, averaged around it `(t,)`."""
-    part = 1 - stop(filtered_log.signals.position[:, filtered_log.rows[row].column], TURNING) ** 2
-    return _smoothed(part * filtered_log.mask[row], TURNING_TIME / filtered_log.signals.step)
+    signals, place = filtered_log.signals, filtered_log.rows[row]
+    joint = place.column
+    if place.residual_name == "drive":
+        joint = int(np.argmax(np.abs(signals.subject.joint_from_motor[:, joint])))
+    part = 1 - stop(signals.position[:, joint], TURNING) ** 2
+    return _smoothed(part * filtered_log.mask[row], TURNING_TIME / signals.step)
 
 
 def _at(values: np.ndarray, band: Band) -> np.ndarray:
@@ -146,7 +150,7 @@ def _loads(filtered_log: FilteredLog) -> tuple[dict[str, np.ndarray], dict[str, 
         still[residual_name] = np.zeros(residual.shape[1])
         if residual_name == "motion":
             moving[residual_name] = applied(subject.joint_from_motor, signals.believed)
-            still[residual_name] = dry_friction(signals)
+            still[residual_name] = _dry(signals, behind=False)
         elif residual_name == "base" and signals.contact is not None:
             total = np.linalg.norm(np.nan_to_num(signals.contact).sum(1), axis=-1)
             moving[residual_name] = np.stack([total] * 3 + [0.2 * total] * 3, -1)
@@ -158,9 +162,20 @@ def _loads(filtered_log: FilteredLog) -> tuple[dict[str, np.ndarray], dict[str, 
             moving[residual_name] = signals.velocity @ subject.joint_from_motor
         elif signals.command is not None and residual.shape[1] == signals.command.shape[1]:
             moving[residual_name] = signals.command
+            if residual_name == "drive" and signals.behind_gears is not None:
+                dry = _dry(signals, behind=True)
+                still[residual_name] = np.abs(subject.motor_from_joint) @ dry
         else:
             moving[residual_name] = residual
     return moving, still
+
+
+def _dry(signals: Signals, *, behind: bool) -> np.ndarray:
+    """Dry friction of the joints whose torque is, or is not, measured behind the gear `(n,)`."""
+    sensed = signals.behind_gears
+    if sensed is None:
+        return dry_friction(signals)
+    return np.where(sensed == behind, dry_friction(signals), 0.0)
 
 
 def _strength(filtered_log: FilteredLog, row: int) -> float:
@@ -199,19 +214,22 @@ def _of_acceleration(filtered_log: FilteredLog, row: int, low: float, high: floa
     differentiated, below the smoother's crossover `(t,)`.
     """
     signals, place = filtered_log.signals, filtered_log.rows[row]
-    if (
-        place.residual_name != "motion"
-        or signals.noise is None
-        or not np.isfinite(signals.noise[place.column])
-    ):
-        return np.zeros(len(signals.time))
+    nothing = np.zeros(len(signals.time))
+    if signals.noise is None:
+        return nothing
     square = _shaken(signals)
-    stiff = _feedback(filtered_log, row)
     turned = (2 * np.pi) ** 4 * (high**5 - low**5) / 5
-    own = inertias_at(signals, place.column)
-    variance = (
-        turned * np.sum(own**2 * square, -1) + stiff**2 * (high - low) * square[:, place.column]
-    )
+    if place.residual_name == "drive" and signals.sensed_behind[place.column]:
+        rotors = signals.subject.motor_from_joint[place.column] @ signals.subject.armature
+        variance = turned * square @ rotors**2
+    elif place.residual_name == "motion" and np.isfinite(signals.noise[place.column]):
+        stiff = _feedback(filtered_log, row)
+        own = inertias_at(signals, place.column)
+        variance = (
+            turned * np.sum(own**2 * square, -1) + stiff**2 * (high - low) * square[:, place.column]
+        )
+    else:
+        return nothing
     return np.asarray(
         _smoothed(2 * signals.step * variance, 0.5 / (high - low) / signals.step)
     )  # as long as a sample of the band sees
@@ -355,6 +373,8 @@ def inertias_at(signals: Signals, joint: int) -> np.ndarray:
         At every tick `(t, n)` [kg m^2].
     """
     own = inertias(signals)[joint]
+    if signals.behind_gears is not None and signals.behind_gears[joint]:
+        own = own - signals.subject.armature[joint]
     return np.asarray(own[np.arange(len(signals.time)) // _every(signals)])
 
 

@@ -56,6 +56,9 @@ class Metadata:
     logged voltage of the battery."""
     targets: str = ""
     """One of `TARGETS`."""
+    torque_sensors: tuple[str, ...] = ()
+    """Joints whose `joint_torque` a sensor between gear and link measures, so that friction and
+    rotors act before it."""
     payload: Mapping[str, tuple[float, float, float, float]] = field(default_factory=dict)
     """What hangs on the robot by link: mass [kg], centre of mass in the link's frame x, y, z
     [m]."""
@@ -163,7 +166,7 @@ def _checked(content: Mapping[str, Any], where: str) -> dict[str, Any]:
         **dict.fromkeys(NUMBERS, _numbers_by_name),
         "overrides": _overrides,
         "gravity": _gravity,
-        "remarks": _texts,
+        **dict.fromkeys(("remarks", "torque_sensors"), _texts),
     }
     values = {
         key: check(content[key], where, key) for key, check in checks.items() if key in content

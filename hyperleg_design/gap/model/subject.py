@@ -185,7 +185,7 @@ class Subject:
         Raises:
             InputError: a joint, motor or link that the robot does not have.
         """
-        keys = ("gains", "torque_constant", "supply", "payload", "gravity")
+        keys = ("gains", "torque_constant", "supply", "torque_sensors", "payload", "gravity")
         if (
             all(getattr(self.declared, k) == getattr(metadata, k) for k in keys)
             and self.bare is not None
@@ -202,6 +202,8 @@ def _declared(bare: Subject, metadata: Metadata) -> Subject:
         gains[index_of(joint, bare.joints, "gains", "joint")] = pair
     for motor, value in metadata.torque_constant.items():
         constant[motor_index(bare, motor, "torque_constant")] = value
+    for joint in metadata.torque_sensors:
+        index_of(joint, (*bare.joints, *bare.unlogged), "torque_sensors", "joint")
     supply = np.array(bare.supply)
     stall = np.array(bare.stall_torque)
     free = np.array(bare.no_load_speed)

@@ -77,6 +77,10 @@ def best_input(signals: Signals) -> str:
         One of `INPUTS`.
     """
     subject = signals.subject
+    if signals.behind_gears is not None and signals.command is not None:
+        known = np.isfinite(signals.command).any(0)
+        if signals.target is None and known[~subject.passive if subject.one_to_one else ...].all():
+            return "command"
     if signals.target is not None:
         driven = ~subject.passive & np.isfinite(signals.target).any(0)
         if (
@@ -144,6 +148,8 @@ def _inputs(signals: Signals, follow: str) -> np.ndarray:
         "command": signals.command,
         "torque": signals.believed,
     }
+    if signals.before_sensors is not None:
+        known["torque"] = signals.believed + signals.before_sensors
     followed = known[follow]
     if followed is None:
         raise InputError(

@@ -100,12 +100,25 @@ def condition(log: Log, subject: Subject) -> Signals:
         subject, ground, margin=int(np.ceil(_edge(motion, lacking) / step))
     )
     unknown = unknown | at_stop(subject, motion.value)
+    behind = _behind_gears(log, subject, measured)
+    before = None
+    if behind is not None:
+        swing = None if shaken is None else shaken.speed
+        taken = friction.rubbing_torque(subject, motion.first, swing)
+        taken = np.where(behind, taken + motion.second @ subject.armature.T, 0.0)
+        needed, before = needed - taken, applied(subject.motor_from_joint, taken)
     residual["motion"] = np.where(
         unknown | lacking, np.nan, applied(subject.joint_from_motor, believed) - needed
     )
     if measured is not None and limited is not None:
-        residual["drive"], repeated = _drive_residual(subject, measured, limited)
+        given = measured if before is None else measured + before
+        residual["drive"], repeated = _drive_residual(subject, given, limited)
         notes += repeated
+    elif behind is not None:
+        notes.append(
+            f"torque sensors behind the gears of {_names(subject.joints, behind)}: without "
+            f"commands, friction, rotors and drives of these joints do not show"
+        )
     if control is not None:
         residual["control"] = control
     if others:
@@ -143,6 +156,8 @@ def condition(log: Log, subject: Subject) -> Signals:
         noise=motion.level,
         jump=jump,
         limit_cycle=shaken,
+        behind_gears=behind,
+        before_sensors=before,
         notes=tuple(notes),
     )
     of_ground = ground_residual(signals)
@@ -347,6 +362,20 @@ def _measured(log: Log, subject: Subject, ticks: np.ndarray) -> np.ndarray | Non
     if subject.one_to_one:
         measured[:, subject.passive] = 0.0
     return measured
+
+
+def _behind_gears(log: Log, subject: Subject, measured: np.ndarray | None) -> np.ndarray | None:
+    """Joints whose torque a sensor behind the gear tells, and no signal of their motors `(n,)`;
+    None where there is none.
+    """
+    if measured is None or not log.metadata.torque_sensors:
+        return None
+    logged = of_motors(log, "motor_torque", subject), of_motors(log, "motor_current", subject)
+    own = np.isfinite(np.concatenate(logged)).any(0)
+    sensed = np.isin(subject.joints, log.metadata.torque_sensors)
+    sensed &= np.isfinite(log.stack("joint_torque", subject.joints)).any(0)
+    sensed &= ~(subject.joint_from_motor[:, own] != 0).any(1)
+    return sensed if sensed.any() else None
 
 
 def _believed(

@@ -177,11 +177,13 @@ def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> Filtere
     from scipy.fft import next_fast_len
 
     rows, masks, rubs = [], [], rubbing(signals).tolist()
+    rubbed = _joints_that_rub(signals)
     for residual_name, residual in sorted(signals.residual.items()):
         for column in range(residual.shape[1]):
             mask = signals.valid & np.isfinite(residual[:, column])
-            if residual_name == "motion" and resting is not None:
-                mask = moving(mask, resting[:, column], signals.step, rubs=rubs[column])
+            joint = rubbed.get((residual_name, column))
+            if joint is not None and resting is not None:
+                mask = moving(mask, resting[:, joint], signals.step, rubs=rubs[joint])
             if mask.sum() < FEWEST:
                 continue
             name = row_names(signals.subject, residual_name)[column]
@@ -198,6 +200,18 @@ def filtered_log(signals: Signals, resting: np.ndarray | None = None) -> Filtere
         tuple(bands[row] for row in shown),
         length,
     )
+
+
+def _joints_that_rub(signals: Signals) -> dict[tuple[str, int], int]:
+    """Joints whose friction each row of a residual holds: its own, or, before a torque sensor
+    behind the gear, the joint that a motor moves most.
+    """
+    matrix, behind = signals.subject.joint_from_motor, signals.behind_gears
+    if behind is None:
+        return {("motion", joint): joint for joint in range(len(matrix))}
+    own = {("motion", joint): joint for joint in np.flatnonzero(~behind).tolist()}
+    sensed = np.flatnonzero(signals.sensed_behind).tolist()
+    return own | {("drive", motor): int(np.argmax(np.abs(matrix[:, motor]))) for motor in sensed}
 
 
 def _cutoff(signals: Signals, residual_name: str, column: int) -> float:

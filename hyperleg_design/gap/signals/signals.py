@@ -14,6 +14,7 @@ from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.model.supply import over_nominal
+from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.limit_cycle import LimitCycle
 
 RESIDUALS = {
@@ -84,7 +85,8 @@ class Signals:
     Residuals, each what the log shows minus what the nominal model explains:
         motion: believed joint torque minus the torque that the logged motion needs `(t, n)` [Nm];
         drive: measured motor torque minus the torque that the controller asks for, within nominal
-            limits `(t, m)` [Nm], where both are known;
+            limits `(t, m)` [Nm], where both are known; of sensors behind the gear, with the nominal
+            friction and the rotors that act before them;
         control: logged command of the motors minus the one that the declared gains make of the
             logged targets and state `(t, m)` [Nm], where both are known and the controller is of
             that form;
@@ -156,6 +158,11 @@ class Signals:
     [Nm]."""
     limit_cycle: LimitCycle | None = None
     """Of joints that swing to and fro above all that was commanded; None where none does."""
+    behind_gears: np.ndarray | None = None
+    """Joints whose torque is measured by a sensor between gear and link `(n,)`; None where no
+    joint's is. Their nominal friction and rotors are not in `rigid`."""
+    before_sensors: np.ndarray | None = None
+    """What nominal friction and rotors take of motors before these sensors `(t, m)` [Nm]."""
     notes: tuple[str, ...] = ()
     """What this log lacked and what was assumed in its place."""
 
@@ -165,6 +172,28 @@ class Signals:
         see `supply`.
         """
         return over_nominal(self.subject, self.voltage)
+
+    @cached_property
+    def sensed_behind(self) -> np.ndarray:
+        """Motors whose torque is measured behind the gear `(m,)`."""
+        matrix = self.subject.joint_from_motor
+        if self.behind_gears is None:
+            return np.zeros(matrix.shape[1], bool)
+        return np.asarray((matrix[self.behind_gears] != 0).any(0))
+
+    @cached_property
+    def resisting(self) -> np.ndarray:
+        """Residual in which friction and rotors show, as the torque that joints take beyond the
+        model `(t, n)` [Nm]: of motion, or of the drive before a sensor behind the gear.
+        """
+        motion = self.residual["motion"]
+        if self.behind_gears is None:
+            return motion
+        drive = self.residual.get("drive")
+        taken = np.full_like(motion, np.nan)
+        if drive is not None:
+            taken = -applied(self.subject.joint_from_motor, drive)
+        return np.where(self.behind_gears, taken, motion)
 
     @property
     def steered(self) -> bool:

@@ -95,7 +95,7 @@ def _beside_posture(signals: Signals, joint: int) -> tuple[np.ndarray, np.ndarra
     """Way of sliding, velocity, and the residual of a joint at known ticks, without functions of
     posture, load and acceleration `(t,)` each.
     """
-    angles, residual = np.nan_to_num(signals.position), signals.residual["motion"][:, joint]
+    angles, residual = np.nan_to_num(signals.position), signals.resisting[:, joint]
     known = signals.valid & np.isfinite(residual)
     own = signals.acceleration[:, joint], signals.rigid[:, joint]
     posture = [np.ones((len(angles), 1)), np.sin(angles), np.cos(angles)]

@@ -103,7 +103,7 @@ def run(
     gains=(STIFFNESS, DAMPING),
 ) -> Log:
     """Log at 200 Hz; `sees` of motor_torque, motor_torque_command, motor_velocity, temperature,
-    voltage. Targets and state always.
+    voltage, and joint_torque of a sensor between gear and link. Targets and state always.
     """
     link = INERTIA + MASS * LENGTH**2
     rotor = ROTOR + wrong.rotor
@@ -154,6 +154,7 @@ def run(
         elif wrong.share:
             # what reaches the joint of a rigid drive: less what turns the rotor
             load = torque - rotor * (torque - gravity - bristle) / (link + rotor)
+        before = v
         size = (
             wrong.coulomb
             + wrong.breakaway * math.exp(-((v / wrong.stribeck_speed) ** 2))
@@ -173,6 +174,9 @@ def run(
             bristle = moved
         else:
             v += STEP * force / inertia
+        if tick % every == 0:
+            held = link * (v - before) / STEP + gravity + wrong.stiffness * q + wrong.preload
+            rows[-1] += (held,)
         q += STEP * v
         if not two:
             angle, speed = q * wrong.ratio, v * wrong.ratio
@@ -187,13 +191,16 @@ def run(
         signals["motor_torque_command/swing"] = table[:, 4]
     if "motor_torque" in sees:
         signals["motor_torque/swing"] = table[:, 5]
+    if "joint_torque" in sees:
+        signals["joint_torque/swing"] = table[:, 7]
     if "motor_velocity" in sees:
         signals["motor_velocity/swing"] = table[:, 6]
     if "temperature" in sees:
         signals["motor_temperature/swing"] = np.array([temperature(t) for t in time])
     if "voltage" in sees:
         signals["battery_voltage"] = np.array([voltage(t) for t in time])
-    return Log("pendulum", time, signals, Metadata(gains={"swing": gains}))
+    sensors = ("swing",) if "joint_torque" in sees else ()
+    return Log("pendulum", time, signals, Metadata(gains={"swing": gains}, torque_sensors=sensors))
 
 
 def subject(folder, log: Log):

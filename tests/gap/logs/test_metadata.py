@@ -45,6 +45,7 @@ def test_remarks_stand_once():
         ({"base": "flying"}, "base = 'flying': expects fixed or floating"),
         ({"role": "best"}, "role"),
         ({"targets": "still"}, "targets = 'still': expects kept or moving"),
+        ({"torque_sensors": "knee"}, "torque_sensors = 'knee': expects a list of texts"),
         ({"gravity": [0, 0]}, "gravity.*3 numbers"),
         ({"gravity": [0, 0, -9810]}, "gravity.*m/s"),
         ({"gains": {"knee": [1]}}, "gains.knee.*2 numbers"),

@@ -3,7 +3,7 @@ import pytest
 import robots
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.playback.replay import replay
+from hyperleg_design.gap.playback.replay import best_input, replay
 from hyperleg_design.gap.playback.windows import Windows
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
@@ -28,6 +28,15 @@ def test_torque_replays_reproduce_the_simulation(signals, name, worst):
     assert (rms(position) < worst).all()
     assert (rms(velocity) < 12 * worst).all()
     np.testing.assert_allclose(found.torque[0, :, 0], one.believed[found.windows.start], atol=1e-9)
+
+
+def test_logs_of_torque_sensors_behind_gears_are_replayed_by_commands(robot_files, runs):
+    log = robots.with_torque_sensors(runs["coupled"])
+    one = condition(log, load_subject(robot_files["coupled"], [log]))
+    assert best_input(one) == "command"
+    for follow in ("", "torque"):
+        position, _ = replay(one, follow=follow).errors(one)
+        assert (rms(position) < 2e-3).all()
 
 
 def test_finer_steps_come_nearer(signals, monkeypatch):

@@ -44,6 +44,45 @@ def test_motion_balance_of_a_simulated_robot_vanishes(robot_files, runs, name, c
     assert share(condition(rounded, load_subject(robot_files[name], [rounded]))).max() < rough
 
 
+def test_behind_gears_that_torque_sensors_see_both_balances_vanish(robot_files, runs):
+    log = robots.with_torque_sensors(runs["coupled"])
+    signals = condition(log, load_subject(robot_files["coupled"], [log]))
+    assert signals.behind_gears.all()
+    assert signals.sensed_behind.all()
+    held = log.stack("joint_torque", ("hip", "knee"))
+    for residual, load in (
+        (signals.residual["motion"], held),
+        (signals.resisting, held),
+        (signals.residual["drive"], signals.command),
+    ):
+        assert np.nanstd(residual[signals.valid]) < 5e-3 * np.std(load)
+    before = signals.before_sensors[signals.valid]
+    drive = signals.residual["drive"][signals.valid] - before
+    assert np.std(before) > 10 * np.nanstd(drive + before)
+
+
+def test_without_commands_torque_sensors_tell_nothing_of_drives(robot_files, runs):
+    log = robots.without(robots.with_torque_sensors(runs["coupled"]), "motor_torque_command")
+    signals = condition(log, load_subject(robot_files["coupled"], [log]))
+    assert "drive" not in signals.residual
+    assert np.isnan(signals.resisting).all()
+    assert any("hip, knee: without commands" in note for note in signals.notes)
+
+
+def test_torques_of_motors_count_before_those_of_sensors_at_their_joints(robot_files, runs):
+    log = robots.with_torque_sensors(runs["coupled"])
+    both = log.changed(signals=runs["coupled"].signals | log.signals)
+    signals = condition(both, load_subject(robot_files["coupled"], [both]))
+    assert signals.behind_gears is None
+    np.testing.assert_allclose(signals.residual["drive"], 0, atol=1e-9)
+
+
+def test_a_torque_sensor_at_no_joint_is_refused(robot_files, runs):
+    log = runs["coupled"].changed(metadata=Metadata(torque_sensors=("elbow",)))
+    with pytest.raises(InputError, match="torque_sensors = 'elbow': is no joint"):
+        condition(log, load_subject(robot_files["coupled"]))
+
+
 def test_drive_balance_of_a_servo_is_nothing(robot_files, runs):
     log = runs["arm"]
     signals = condition(log, load_subject(robot_files["arm"], [log]))

@@ -74,11 +74,11 @@ def test_dry_friction_is_told_beside_a_rotor_and_a_load_that_the_model_lacks(fri
     signals.subject.coulomb = signals.subject.viscous = np.zeros(1)
     noise = np.random.default_rng(2).normal(0, 0.1, len(time))
     left = friction * np.sign(velocity) + 0.3 * acceleration + load * np.sin(position) + noise
-    signals.residual = {"motion": left[:, None]}
+    signals.resisting = left[:, None]
     assert dry_friction(signals)[0] == pytest.approx(friction, rel=0.05)
     assert viscous_friction(signals)[0] == pytest.approx(0.0, abs=0.08)
     signals = Shown(**vars(signals))
-    signals.residual = {"motion": left[:, None] + 0.2 * friction * velocity[:, None]}
+    signals.resisting = left[:, None] + 0.2 * friction * velocity[:, None]
     assert viscous_friction(signals)[0] == pytest.approx(0.2 * friction, abs=0.08)
 
 
@@ -89,7 +89,7 @@ def test_a_load_alone_is_no_dry_friction_and_the_friction_of_a_model_is_kept():
     signals.acceleration = -4.5 * np.sin(3 * time)[:, None]
     signals.rigid = np.zeros((len(time), 1))
     signals.valid = np.ones(len(time), bool)
-    signals.residual = {"motion": 3.0 * np.cos(signals.position)}
+    signals.resisting = 3.0 * np.cos(signals.position)
     signals.subject.coulomb = signals.subject.viscous = np.zeros(1)
     assert dry_friction(signals)[0] == viscous_friction(signals)[0] == 0.0
     signals = Shown(**vars(signals))

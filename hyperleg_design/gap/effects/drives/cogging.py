@@ -123,7 +123,7 @@ class Cogging(MotorTorque):
         motor = subject.motors.index(location)
         main = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
         ratio = subject.joint_from_motor[main, motor]
-        residual = signals.residual["motion"][:, main] / ratio
+        residual = signals.resisting[:, main] / ratio
         known = np.isfinite(residual) & signals.valid
         if known.sum() < 16:
             return super().starts(signals, location)

@@ -130,7 +130,10 @@ class TorqueConstant(MotorEffect):
             return {}
         motor = signals.subject.motors.index(location)
         rows = np.zeros_like(signals.measured)
-        rows[:, motor] = spread * (signals.measured - signals.residual["drive"])[:, motor]
+        asked = signals.measured - signals.residual["drive"]
+        if signals.before_sensors is not None:
+            asked = asked + signals.before_sensors
+        rows[:, motor] = spread * asked[:, motor]
         return {"drive": rows}
 
     @override
@@ -150,6 +153,8 @@ class TorqueConstant(MotorEffect):
         motor = signals.subject.motors.index(location)
         scale, reading = np.atleast_2d(np.asarray(values, float)).T[..., None]
         lost = (1.0 - scale) * (given(signals, motor) - braked(signals, motor))
+        if signals.sensed_behind[motor]:
+            return _sensed(signals, motor, lost, 1.0 - scale, reading)
         trace = at_motor(signals, motor, lost)
         if reading.any() and _is_commanded_and_measured(signals, motor):
             trace |= before_measurement(signals, {motor: reading * lost})
@@ -169,6 +174,20 @@ class TorqueConstant(MotorEffect):
         """
         both = _is_commanded_and_measured(signals, signals.subject.motors.index(location))
         return np.array([[1.0, 0.0], [1.0, 1.0]] if both else [[1.0, 0.0]])
+
+
+def _sensed(
+    signals: Signals, motor: int, lost: np.ndarray, share: np.ndarray, reading: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Trace where a sensor behind the gear measures: `lost` before it, or a `share` of its
+    reading.
+    """
+    misread = reading * share * signals.believed[:, motor]
+    trace = before_measurement(signals, {motor: misread - (1 - reading) * lost})
+    if reading.any():
+        moved = np.multiply.outer(misread, signals.subject.joint_from_motor[:, motor])
+        trace["motion"] = moved
+    return trace
 
 
 def _is_commanded_and_measured(signals: Signals, motor: int) -> bool:

@@ -19,9 +19,9 @@ from hyperleg_design.simulation.alteration import Alteration, Tick
 
 SOURCE = "cable bundles and seals, 5 % of the joint's torque a radian, and at rest (assumed)"
 USUAL = 0.05, SOURCE, 0.002
-BARE = 0.05, SOURCE, 0.005
-"""Of the preload, as which the zero of a torque sensor shows: those of current sensors wander by
-some 0.5 % of what they measure at most (assumed)."""
+BARE = 0.05, SOURCE, 0.01
+"""Of the preload, as which the zero of a torque sensor shows: those of current and torque sensors
+are off by some 1 % of what they measure (assumed)."""
 
 
 class JointSpring(JointTorque):

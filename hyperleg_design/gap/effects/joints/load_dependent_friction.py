@@ -35,6 +35,7 @@ class LoadDependentFriction(JointTorque):
     """
 
     identifier: ClassVar[str] = "load_dependent_friction"
+    of_drive: ClassVar[bool] = True
     by_load: ClassVar[bool] = True
     nuisance_rank: ClassVar[int] = 3
     summary: ClassVar[str] = "a joint resists motion with a share of the torque that it transmits"
@@ -59,7 +60,9 @@ class LoadDependentFriction(JointTorque):
 
     def _torque(self, signals: Signals, joint: int, coefficient: np.ndarray) -> np.ndarray:
         subject = signals.subject
-        load = signals.rigid[:, joint] - signals.acceleration @ subject.armature[joint]
+        load = signals.rigid[:, joint]
+        if signals.behind_gears is None or not signals.behind_gears[joint]:
+            load = load - signals.acceleration @ subject.armature[joint]
         return coefficient * (np.abs(load) * sliding(signals)[:, joint])
 
     @override

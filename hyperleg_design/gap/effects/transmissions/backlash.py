@@ -55,6 +55,8 @@ class Backlash(MotorEffect):
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         motor = signals.subject.motors.index(location)
+        if signals.sensed_behind[motor]:  # the sensor tells what arrives behind the gear
+            return {}
         angle, side, coasting, behind = np.atleast_2d(np.asarray(values, float)).T
         moved = slack.slack(
             signals, motor, angle * signals.subject.motor_over_joint(motor), side, coasting, behind

@@ -79,6 +79,8 @@ class TransmissionElasticity(MotorEffect):
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         motor = signals.subject.motors.index(location)
+        if signals.sensed_behind[motor]:  # the sensor tells what arrives behind the gear
+            return {}
         settings = np.atleast_2d(np.asarray(values, float)).T
         compliance, damping_ratio, side, behind, stiffening = settings
         load, transmitted = belt.load(signals, motor), belt.transmitted(signals, motor)

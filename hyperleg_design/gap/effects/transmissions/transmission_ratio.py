@@ -76,6 +76,8 @@ class TransmissionRatio(MotorEffect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         subject = signals.subject
         motor = subject.motors.index(location)
+        if signals.sensed_behind[motor]:  # the sensor tells what arrives behind the gear
+            return {}
         scale, side = np.atleast_2d(np.asarray(values, float)).T[..., None]
         rotor = subject.rotor_inertia[motor] * (
             signals.acceleration @ subject.joint_from_motor[:, motor]

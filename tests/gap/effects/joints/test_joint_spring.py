@@ -45,5 +45,5 @@ def test_the_zero_of_a_torque_sensor_may_wander_more_than_springs_are_usual():
     subject = load_subject("hyperleg")
     stiffness, preload = SPRING.session_spreads(subject, 0.005)["left_knee"]
     knee = subject.joints.index("left_knee")
-    assert preload == 0.005 * joint_strength(subject)[knee]
+    assert preload == 0.01 * joint_strength(subject)[knee]
     assert stiffness < preload
