@@ -206,8 +206,8 @@ class Compare(Printing):
     """Add what trained policies do on each under this protocol (a minute a design)."""
     seeds: Annotated[int, AtLeast(1)] = 3
     """Trainings of each design that are evaluated, at most."""
-    policies: Path | None = None
-    """Folder of trainings; the shipped policies by default."""
+    policies: tuple[Path, ...] = ()
+    """Folders of trainings; the shipped policies by default."""
     swap: Literal["", "lock_toe", "toe_motor_alone", "toe_motor_to_ankle"] = ""
     """With --evaluate: change of the toe that the policies were not trained for."""
 
@@ -246,8 +246,8 @@ class Sweep(Printing):
     seeds: Annotated[int, AtLeast(1)] = 3
     """Trainings of the robot, or of each toe layout, whose policies are evaluated, at most; the
     best on each design is reported."""
-    policies: Path | None = None
-    """Folder of trainings; the shipped policies by default."""
+    policies: tuple[Path, ...] = ()
+    """Folders of trainings; the shipped policies by default."""
     batch: Annotated[int, AtLeast(1)] = 16
     """Designs evaluated side by side; a killed run loses at most those."""
     scheduler: str = ""

@@ -36,8 +36,8 @@ class Search(Printing):
     seeds: Annotated[int, AtLeast(1)] = 1
     """Trainings of the robot, or of each toe layout, whose policies are evaluated, at most; the
     best on each design is reported."""
-    policies: Path | None = None
-    """Folder of trainings; the shipped policies by default."""
+    policies: tuple[Path, ...] = ()
+    """Folders of trainings; the shipped policies by default."""
     batch: Annotated[int, AtLeast(1)] = 8
     """Designs evaluated side by side; a killed run repeats at most those."""
     finalists: Annotated[int, AtLeast(0)] = 3

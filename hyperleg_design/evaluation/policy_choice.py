@@ -7,6 +7,7 @@ under the name of the nearest of the designs that its file is based on.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -44,31 +45,35 @@ the robot's."""
 
 
 def policies_for(
-    kind: str, design: RobotDesign, seeds: int, folder: str | Path | None = None
+    kind: str, design: RobotDesign, seeds: int, folders: Sequence[str | Path] = ()
 ) -> list[Shipped]:
     """List the last policies of the first trainings for a kind of protocol and a robot.
 
     Args:
         kind: of protocol, `walk` or `t_test`; a group's own name chooses that group.
         design: the robot, or a batch of its kind.
-        seeds: most trainings.
-        folder: of trainings; the shipped ones by default.
+        seeds: most trainings of each folder.
+        folders: of trainings; the shipped ones by default.
 
     Returns:
-        One policy for each seed, all of one group and trained on one design.
+        Of each folder one policy for each seed, all of one group and trained on one design.
 
     Raises:
         InputError: there is none, which says how to train one, or why the robot cannot be
-            simulated.
+            simulated; or two folders have a training of the same name.
     """
-    known = [p for p in shipped_policies(folder, late=False) if p.family == design.family]
-    for name in trained_names(design):
-        own = [p for p in known if p.design == name and _stands_for(p.group, kind)]
-        if own:
-            groups = [policy.group for policy in own]
-            best = PREFERRED.get(kind, (kind,))
-            group = next((name for name in best if name in groups), groups[0])
-            return [policy for policy in own if policy.group == group][:seeds]
+    chosen: list[Shipped] = []
+    known: list[Shipped] = []
+    for folder in folders or (None,):
+        there = [p for p in shipped_policies(folder, late=False) if p.family == design.family]
+        known += there
+        chosen += _of_folder(kind, design, seeds, there)
+    names = [policy.training for policy in chosen]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        remedy = "is in two of these folders; rename one, since results name trainings"
+        raise InputError("policies", "", twice[0], remedy)
+    if chosen:
+        return chosen
     simulation_spec(design.take(0) if design.batch_shape else design)
     have = ", ".join(sorted({f"{policy.group}-{policy.design}" for policy in known})) or (
         "none in folders named group-design-seed"
@@ -79,8 +84,22 @@ def policies_for(
         "",
         f"{kind}-{trained_names(design)[0]}",
         f"no policy was trained for this task and {what}; "
-        + (_unfinished(kind, design, folder) or f"there are {have}; {_remedy(kind, design)}"),
+        + (_unfinished(kind, design, folders) or f"there are {have}; {_remedy(kind, design)}"),
     )
+
+
+def _of_folder(
+    kind: str, design: RobotDesign, seeds: int, known: Sequence[Shipped]
+) -> list[Shipped]:
+    """Policies of one folder, as of `policies_for`; none where it has none."""
+    for name in trained_names(design):
+        own = [p for p in known if p.design == name and _stands_for(p.group, kind)]
+        if own:
+            groups = [policy.group for policy in own]
+            best = PREFERRED.get(kind, (kind,))
+            group = next((name for name in best if name in groups), groups[0])
+            return [policy for policy in own if policy.group == group][:seeds]
+    return []
 
 
 def trained_names(design: RobotDesign) -> tuple[str, ...]:
@@ -102,9 +121,9 @@ def _stands_for(group: str, kind: str) -> bool:
     return group == kind or (group.startswith(kind) and not group.endswith(ONLY_STARTS))
 
 
-def _unfinished(kind: str, design: RobotDesign, folder: str | Path | None) -> str:
+def _unfinished(kind: str, design: RobotDesign, folders: Sequence[str | Path]) -> str:
     """That the training of such a policy is not finished; empty where there is none."""
-    begun = unfinished_trainings(folder) if folder is not None else []
+    begun = [training for folder in folders for training in unfinished_trainings(folder)]
     names = trained_names(design)
     own = [t.training for t in begun if t.design in names and _stands_for(t.group, kind)]
     return f"{own[0]} is not finished; {GOES_ON}" if own else ""

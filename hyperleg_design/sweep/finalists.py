@@ -149,10 +149,10 @@ def run_finalists(
         check_fine_tuning(search)
     rows = chosen_finalists(search, study, count)
     folder = Path(out) / FOLDER
-    tuned: dict[tuple[int, str, int], Path] = {}
+    tuned: dict[tuple[int, str, str], Path] = {}
     if steps and rows:
         trainings = {
-            (row["sample"], kind, policy.seed): FineTuning(
+            (row["sample"], kind, policy.training): FineTuning(
                 policy.path, _design(search, row), steps, folder / str(row["sample"])
             )
             for row in rows
@@ -285,7 +285,7 @@ def _design(search: Search, row: Row) -> RobotDesign:
 
 
 def _evaluated(
-    search: Search, row: Row, tuned: Mapping[tuple[int, str, int], Path], threads: int | None
+    search: Search, row: Row, tuned: Mapping[tuple[int, str, str], Path], threads: int | None
 ) -> Row:
     """A finalist's row with the measures of new trials; `tuned` policies stand in for the search's
     where there are any.
@@ -300,7 +300,7 @@ def _evaluated(
         kind = kind_of(protocol)
         mapping = protocol_mapping(final_protocol(protocol))
         for policy in search.plan.policies[kind, variant]:
-            path = tuned.get((row["sample"], kind, policy.seed), policy.path)
+            path = tuned.get((row["sample"], kind, policy.training), policy.path)
             parts.append(
                 evaluate_values(
                     search.sweep, variant, _values(search, row), sample, mapping, path, threads

@@ -99,7 +99,7 @@ def run_trials(
             for policy in wanted.policies[kind, variant]:
                 for start in range(0, len(good), batch):
                     samples = good[start : start + batch]
-                    path = chunks / f"{kind}-{variant}-{policy.seed}-{start:08d}.parquet"
+                    path = chunks / f"{kind}-{variant}-{policy.training}-{start:08d}.parquet"
                     every.append(path)
                     if not _readable(path):
                         job = (sweep, variant, samples, mapping, policy.path, threads)

@@ -137,9 +137,9 @@ def test_a_toe_layout_without_policies_is_one_clear_error(tmp_path):
     name = "t_test_free-toe-0"
     shutil.copytree(find_policy(name).parent, tmp_path / "toe" / name)
     with pytest.raises(InputError, match="toe layout"):
-        plan(sweep, ["t_test"], policies=tmp_path / "toe")
+        plan(sweep, ["t_test"], policies=[tmp_path / "toe"])
     with pytest.raises(InputError, match="no such folder"):
-        plan(sweep, ["walk"], policies=tmp_path / "none")
+        plan(sweep, ["walk"], policies=[tmp_path / "none"])
     with pytest.raises(InputError, match="one of each kind"):
         plan(sweep, ["walk", SHORT])
 

@@ -258,7 +258,7 @@ def compare_walks(
     protocols: Sequence[str],
     *,
     seeds: int = 3,
-    policies: str | Path | None = None,
+    policies: Sequence[str | Path] = (),
     workers: int = 2,
     swap: str = "",
 ) -> dict[str, dict[str, Any]]:
@@ -267,8 +267,8 @@ def compare_walks(
     Args:
         designs: each a single robot.
         protocols: `walk`, `t_test`.
-        seeds: trainings of each.
-        policies: folder of trainings; the shipped ones by default.
+        seeds: trainings of each in each folder.
+        policies: folders of trainings; the shipped ones by default.
         workers: processes side by side.
         swap: one of `SWAPS`, of all designs; none by default.
 

@@ -59,7 +59,8 @@ def _again(committed: Stored, context: Context) -> str:
         f"Nothing of them was run again for this page: "
     )
     try:
-        wanted = plan(committed.sweep, committed.sweep.evaluated, policies=context.policies)
+        folders = () if context.policies is None else (context.policies,)
+        wanted = plan(committed.sweep, committed.sweep.evaluated, policies=folders)
     except HyperlegError as error:
         return text + str(error)
     if wanted.digest != committed.plan:

@@ -166,7 +166,7 @@ def rerun(committed: Stored, wanted: Plan, count: int = RERUN) -> Rerun:
     own = rows[
         (rows["protocol"] == kind_of(protocol))
         & (rows["variant"] == variant)
-        & (rows["seed"] == policy.seed)
+        & (rows["policy"] == policy.training)
         & (rows["trial"] >= 0)
     ]
     there = np.unique(own["sample"])

@@ -50,15 +50,15 @@ def plan(
     protocols: Sequence[str | Path | Protocol],
     *,
     seeds: int = SEEDS,
-    policies: str | Path | None = None,
+    policies: Sequence[str | Path] = (),
 ) -> Plan:
     """Choose protocols and policies of an evaluated sweep.
 
     Args:
         sweep: the definition.
         protocols: shipped names, files, or protocols; the kind decides which policies run them.
-        seeds: trainings of each variant, at most.
-        policies: folder of trainings; the shipped ones by default.
+        seeds: trainings of each variant in each folder, at most.
+        policies: folders of trainings; the shipped ones by default.
 
     Returns:
         The plan.

@@ -16,7 +16,7 @@ pytest.importorskip("onnx")
 
 from hyperleg_design.learning.policies.start_policy import SEEN, read_start
 
-CONDITIONED = resources.content_folder("sim") / "conditioned/walk_upright-toe-0/policy.onnx"
+CONDITIONED = resources.content_folder("sim") / "conditioned/walk_designs-toe-0/policy.onnx"
 
 
 def test_a_conditioned_policy_keeps_the_scale_of_its_inputs(tmp_path: Path) -> None:

@@ -229,7 +229,7 @@ def with_goal_paper(tiny: Preset) -> Preset:
     return dataclasses.replace(tiny, tasks={**tiny.tasks, "goal_paper": tiny.tasks["goal"]})
 
 
-CONDITIONED = resources.content_folder("sim") / "conditioned/walk_upright-toe-0/policy.onnx"
+CONDITIONED = resources.content_folder("sim") / "conditioned/walk_designs-toe-0/policy.onnx"
 HEAVY = ("toe.mass=0.9", "transmission.scale.knee=1.9", "thigh.length=0.42")
 
 

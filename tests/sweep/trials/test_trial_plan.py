@@ -50,7 +50,7 @@ def test_one_trial_cannot_both_choose_a_policy_and_be_reported():
 
 def test_a_folder_without_policies_is_refused(tmp_path):
     with pytest.raises(InputError):
-        plan(SWEEP, ["walk"], policies=tmp_path)
+        plan(SWEEP, ["walk"], policies=[tmp_path])
 
 
 def test_the_committed_trials_are_of_the_protocols_and_policies_of_today():

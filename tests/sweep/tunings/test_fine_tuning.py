@@ -195,7 +195,7 @@ time.sleep(60)
 
 def test_what_cannot_be_a_start_is_one_clear_error(tmp_path, monkeypatch):
     conditioned = str(
-        resources.content_folder("sim") / "conditioned/walk_upright-toe-0/policy.onnx"
+        resources.content_folder("sim") / "conditioned/walk_designs-toe-0/policy.onnx"
     )
     outside = load_design("toe", overrides={"toe.mass": 1.5})
     with pytest.raises(InputError, match=r"toe\.mass.*expects 0\.05 \.\. 1"):

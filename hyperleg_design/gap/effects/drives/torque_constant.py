@@ -122,18 +122,19 @@ class TorqueConstant(MotorEffect):
         self, signals: Signals, location: str, parameter: int, spread: float
     ) -> dict[str, np.ndarray] | None:
         """A reading that is off alone: a share of what a motor was asked for, where it is also
-        measured.
+        measured. A sensor behind the gear that reads too much shows in the motion, too.
         """
         if parameter != READING:
             return None
+        motor = signals.subject.motors.index(location)
+        if signals.sensed_behind[motor]:
+            rows = np.zeros((len(signals.time), len(signals.subject.motors)))
+            rows[:, motor] = spread * (signals.rigid @ signals.subject.motor_from_joint[motor])
+            return {"motion": rows @ signals.subject.joint_from_motor.T, "drive": rows}
         if signals.measured is None or "drive" not in signals.residual:
             return {}
-        motor = signals.subject.motors.index(location)
         rows = np.zeros_like(signals.measured)
-        asked = signals.measured - signals.residual["drive"]
-        if signals.before_sensors is not None:
-            asked = asked + signals.before_sensors
-        rows[:, motor] = spread * asked[:, motor]
+        rows[:, motor] = spread * (signals.measured - signals.residual["drive"])[:, motor]
         return {"drive": rows}
 
     @override

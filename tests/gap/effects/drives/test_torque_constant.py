@@ -65,3 +65,11 @@ def test_what_a_drive_says_of_its_torque_is_off_by_a_share_of_what_it_was_asked_
     np.testing.assert_array_equal(trace["drive"], 0.02 * asked)
     assert CONSTANT.nuisance_trace(signals, "swing", 0, 0.02) is None
     assert CONSTANT.nuisance_trace(pendulum(Wrong(), sees=()), "swing", 1, 0.02) == {}
+
+
+def test_what_a_sensor_behind_the_gear_reads_is_off_by_a_share_of_its_torque(pendulum):
+    signals = pendulum(Wrong(), sees=("joint_torque", "motor_torque_command"))
+    trace = CONSTANT.nuisance_trace(signals, "swing", 1, 0.02)
+    assert set(trace) == {"motion", "drive"}
+    for rows in trace.values():
+        np.testing.assert_allclose(rows, 0.02 * signals.rigid)
