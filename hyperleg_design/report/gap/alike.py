@@ -124,3 +124,20 @@ def spans(causes: Sequence[Mapping[str, Any]]) -> list[Span]:
             )
         )
     return ranges
+
+
+def telling(group: Sequence[Mapping[str, Any]]) -> str:
+    """Name the first size of some causes of one effect that is clearly there, or else the first
+    one.
+
+    Args:
+        group: causes, as `diagnosis.json` holds them.
+
+    Returns:
+        Name of the parameter, or of what follows from some; empty where they have no size.
+    """
+    effect = EFFECTS.get(str(group[0]["effect"]))
+    nulls = {} if effect is None else {p.name: p.null for p in effect.parameters}
+    sizes = [span for span in spans(group) if not span.words and span.low < span.high]
+    clear = [span for span in sizes if not span.low <= nulls.get(span.name, 0.0) <= span.high]
+    return next((span.name for span in (*clear, *sizes)), "")

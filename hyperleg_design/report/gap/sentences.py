@@ -8,7 +8,7 @@ from typing import Any
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.pipeline.unexplained import HIDING
-from hyperleg_design.report.gap.alike import places, span_text, spans, together
+from hyperleg_design.report.gap.alike import places, span_text, spans, telling, together
 from hyperleg_design.report.gap.run import Run
 from hyperleg_design.report.gap.text import beyond_references
 
@@ -167,22 +167,11 @@ def phrase(causes: Sequence[Entry]) -> str:
 
 
 def _size(group: Sequence[Entry]) -> str:
-    """The first size of some causes of one effect that is clearly there, or else the first one, in
-    parentheses; empty where they have none.
-    """
-    effect = EFFECTS.get(str(group[0]["effect"]))
-    nulls = {} if effect is None else {p.name: p.null for p in effect.parameters}
-    sizes = [
-        (span, value)
-        for span, value in zip(spans(group), cause_row(*group).values, strict=False)
-        if value.interval
-    ]
-    clear = [
-        value for span, value in sizes if not span.low <= nulls.get(span.name, 0.0) <= span.high
-    ]
-    for value in (*clear, *(value for _, value in sizes)):
-        return f" ({value.name} {value.value})"
-    return ""
+    """The size that tells most, in parentheses; empty where there is none."""
+    name = telling(group)
+    sizes = zip(spans(group), cause_row(*group).values, strict=False)
+    own = (value for span, value in sizes if span.name == name and value.interval)
+    return next((f" ({value.name} {value.value})" for value in own), "")
 
 
 def named(entry: Entry) -> str:

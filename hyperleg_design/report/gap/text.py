@@ -11,7 +11,7 @@ from hyperleg_design.gap.logs.sampling import Column
 from hyperleg_design.gap.pipeline.detected_causes import APART
 from hyperleg_design.gap.playback.added import Changed, Replayed
 from hyperleg_design.gap.playback.measure import Gap
-from hyperleg_design.report.gap.alike import places, span_text, spans, together
+from hyperleg_design.report.gap.alike import places, span_text, spans, telling, together
 
 NOISE_FROM = {
     "reference": "reference logs",
@@ -285,14 +285,20 @@ def _cause_lines(title: str, group: Sequence[Mapping[str, Any]]) -> list[str]:
     line = f"  {title} {group[0]['effect']} at {where}: p {probability:.2f}{closes}; {words}"
     if len(group) == 1:
         return [line]
-    # the first parameter is the size; its value at each place
-    values = [next(iter(row["parameters"].values())) for row in group]
+    name = telling(group)
+    values = [_value(row, name) for row in group]
     each = (
         f"{row['location']} {float(value['value']):.4g}"
         for row, value in zip(group, values, strict=True)
     )
     unit = f" {values[0]['unit']}" if values[0]["unit"] else ""
     return [line, f"    {', '.join(each)}{unit}"]
+
+
+def _value(cause: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """A parameter of a cause; the first one where it has none of that name."""
+    parameters = cause["parameters"]
+    return dict(parameters.get(name) or next(iter(parameters.values())))
 
 
 def _closed(cause: Mapping[str, Any]) -> float:

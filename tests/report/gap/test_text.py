@@ -144,6 +144,25 @@ def test_one_effect_at_many_places_is_one_line_with_its_size_at_each():
     assert two.count("  cause torque_constant at") == 2
 
 
+def test_of_an_effect_at_many_places_the_size_that_is_clearly_there_is_told_at_each():
+    (cause,) = diagnosis()["causes"]
+    stiffness = {"value": 0.01, "low": -0.1, "high": 0.1, "unit": "Nm/rad"}
+    causes = [
+        {
+            **cause,
+            "effect": "joint_spring",
+            "location": name,
+            "parameters": {
+                "stiffness": stiffness,
+                "preload": {"value": size, "low": 0.1, "high": 0.5, "unit": "Nm"},
+            },
+        }
+        for name, size in (("hip", 0.2), ("knee", 0.3), ("ankle", 0.4))
+    ]
+    text = diagnosis_text(diagnosis(causes=causes))
+    assert "\n    hip 0.2, knee 0.3, ankle 0.4 Nm" in text
+
+
 def test_smallest_changes_stay_in_their_own_units():
     entries = [
         {"effect": "joint_spring", "location": place, "parameter": "stiffness", "change": size}
