@@ -56,7 +56,7 @@ def _derived(
     subject: Subject, cause: Cause, values: np.ndarray, stated: dict[str, Value]
 ) -> dict[str, Value]:
     """The same in words that people use, with intervals from those of the parameters, each moved
-    alone.
+    alone; nothing of what an end of these intervals does not have.
     """
     effect = EFFECTS[cause.effect]
     middle = effect.derived(cause.location, values, subject)
@@ -65,8 +65,9 @@ def _derived(
         own, interval = np.arange(len(values)) == i, stated[parameter.name]
         ends = [np.where(own, end, values) for end in (interval.low, interval.high)]
         tried = [effect.derived(cause.location, end, subject) for end in ends]
+        middle = {n: v for n, v in middle.items() if all(n in t for t in tried)}
         for name, (value, _) in middle.items():
-            moves = [t[name][0] - value for t in tried if name in t]
+            moves = [t[name][0] - value for t in tried]
             below[name] = float(np.hypot(below[name], min(*moves, 0.0)))
             above[name] = float(np.hypot(above[name], max(*moves, 0.0)))
     at = subject, effect.kind, cause.location

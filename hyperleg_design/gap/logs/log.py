@@ -292,11 +292,10 @@ def finished_log(
     """
     time, signals, more = tidied(time, signals, path.name)
     check_clock(time, path.name)
-    if not any(
-        column.startswith("position/") and np.isfinite(values).any()
-        for column, values in signals.items()
-    ):
-        remedy = "is missing: expects the measured angle of at least one joint, in position/JOINT"
+    positions = {c: values for c, values in signals.items() if c.startswith("position/")}
+    if not any(np.isfinite(values).any() for values in positions.values()):
+        what = f"no number in {', '.join(positions)}" if positions else "is missing"
+        remedy = f"{what}: expects the measured angle of at least one joint, in position/JOINT"
         raise InputError(path.name, "position/...", None, remedy)
     return Log(
         name or path.stem,

@@ -82,6 +82,10 @@ def test_a_rest_angle_has_the_doubt_of_both_numbers_it_comes_of():
     )
 
 
+def test_a_rest_angle_that_an_end_of_the_interval_lacks_is_not_stated():
+    assert "rest" not in values_of("joint_spring", [1.0, 0.5], [0.48, 0.01])
+
+
 def test_intervals_end_at_bounds_and_scale_with_the_deviation():
     narrow = values_of("coulomb_friction", [0.3], [0.1])["torque"]
     wide = values_of("coulomb_friction", [0.3], [0.2])["torque"]

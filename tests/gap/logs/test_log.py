@@ -170,6 +170,11 @@ def test_missing_empty_and_truncated_files(tmp_path):
 def test_wrong_columns(tmp_path):
     with pytest.raises(InputError, match=r"run.parquet: t.*is missing"):
         read_log(write_table(tmp_path / "run.parquet", time=[0.0, 1.0]))
+    with pytest.raises(InputError, match=r"position/\.\.\.: is missing: expects"):
+        read_log(write_table(tmp_path / "run.parquet", t=[0.0, 1.0]))
+    empty = {"t": [0.0, 1.0], "position/knee": [float("nan")] * 2}
+    with pytest.raises(InputError, match="no number in position/knee: expects the measured"):
+        read_log(write_table(tmp_path / "run.parquet", **empty))
     with pytest.raises(InputError, match=r"position/knee = 'string': is no column of numbers"):
         read_log(
             write_table(

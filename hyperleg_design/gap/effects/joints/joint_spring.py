@@ -23,6 +23,9 @@ BARE = 0.05, SOURCE, 0.01
 """Of the preload, as which the zero of a torque sensor shows: those of current and torque sensors
 are off by some 1 % of what they measure (assumed)."""
 
+FARTHEST = 2 * np.pi
+"""Distance from a joint's posture of rest up to which the rest of a spring is stated [rad]."""
+
 
 class JointSpring(JointTorque):
     """A cable, a seal or a spring pulls a joint back: stiffness (q - default) + preload, default
@@ -77,10 +80,12 @@ class JointSpring(JointTorque):
     def derived(
         self, location: str, values: np.ndarray, subject: Subject
     ) -> dict[str, tuple[float, str]]:
-        """Angle at which it rests."""
-        stiffness, preload = values
+        """Angle at which it rests; nothing of a pull that hardly changes within `FARTHEST`."""
+        stiffness, preload = (float(value) for value in values)
+        if abs(preload) > FARTHEST * abs(stiffness) or not stiffness:
+            return {}
         default = float(subject.default[subject.joints.index(location)])
-        return {"rest": (default - float(preload) / float(stiffness), "rad")} if stiffness else {}
+        return {"rest": (default - preload / stiffness, "rad")}
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:

@@ -36,6 +36,8 @@ def test_people_read_the_angle_of_rest(pendulum):
     where = signals.position[:, 0]
     trace = SPRING.trace(signals, "swing", np.array([[2.0, 0.5]]))["motion"][0, :, 0]
     np.testing.assert_allclose(trace, 2.0 * (where - rest))
+    assert SPRING.derived("swing", np.array([0.01, 0.5]), subject) == {}
+    assert SPRING.derived("swing", np.array([0.0, 0.0]), subject) == {}
 
 
 def test_the_zero_of_a_torque_sensor_may_wander_more_than_springs_are_usual():
