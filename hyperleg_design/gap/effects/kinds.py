@@ -12,7 +12,7 @@ import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.effect import Effect
-from hyperleg_design.gap.effects.placing import at_joint, at_motor, driven_motors, resisting
+from hyperleg_design.gap.effects.placing import at_joint, at_motor, driven_motors
 from hyperleg_design.gap.effects.strength import joint_strength, motor_strength
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
@@ -35,15 +35,15 @@ class JointEffect(Effect):
 class JointTorque(JointEffect):
     """A torque that a joint takes from its drive, beyond the model."""
 
-    of_drive: ClassVar[bool] = False
+    resists: ClassVar[bool] = False
     """Whether it acts before a torque sensor that sits between gear and link."""
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         joint = signals.subject.joints.index(location)
         settings = np.atleast_2d(np.asarray(values, float))
-        trace = at_joint(signals, joint, self._torque(signals, joint, *settings.T[..., None]))
-        return resisting(signals, trace["motion"]) if self.of_drive else trace
+        torque = self._torque(signals, joint, *settings.T[..., None])
+        return at_joint(signals, joint, torque, resists=self.resists)
 
     @abstractmethod
     def _torque(self, signals: Signals, joint: int, *values: Any, **named: Any) -> np.ndarray:

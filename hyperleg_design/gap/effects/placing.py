@@ -49,24 +49,30 @@ def driven_motors(subject: Subject) -> tuple[str, ...]:
     return subject.motors
 
 
-def at_joint(signals: Signals, joint: int, torque: np.ndarray) -> dict[str, np.ndarray]:
+def at_joint(
+    signals: Signals, joint: int, torque: np.ndarray, *, resists: bool = False
+) -> dict[str, np.ndarray]:
     """Trace of a torque that a joint takes from its drive, beyond the model `(k, t)` [Nm].
 
     Args:
         signals: a conditioned log, `t` ticks.
         joint: index of the joint.
         torque: `(k, t)` [Nm].
+        resists: whether it acts before a torque sensor behind the gear, as friction does.
 
     Returns:
         The trace by name of the residual.
     """
+    if resists and signals.behind_gears is not None and signals.behind_gears[joint]:
+        share = signals.subject.motor_from_joint[:, joint]
+        return {"drive": -torque[..., None] * share}
     rows = _rows(torque, len(signals.subject.joints))
     rows[:, joint] = torque
     return {"motion": rows.swapaxes(1, 2)}
 
 
 def resisting(signals: Signals, torque: np.ndarray) -> dict[str, np.ndarray]:
-    """Trace of torques that friction and rotors take at the joints, beyond the model.
+    """Trace of torques that friction takes at all joints, beyond the model.
 
     Args:
         signals: a conditioned log, `t` ticks.
@@ -76,11 +82,10 @@ def resisting(signals: Signals, torque: np.ndarray) -> dict[str, np.ndarray]:
         The trace by name of the residual.
     """
     behind = signals.behind_gears
-    if behind is None or not torque[..., behind].any():
+    if behind is None:
         return {"motion": torque}
     drive = -np.where(behind, torque, 0.0) @ signals.subject.motor_from_joint.T
-    rest = np.where(behind, 0.0, torque)
-    return {"drive": drive, "motion": rest} if rest.any() else {"drive": drive}
+    return {"drive": drive, "motion": np.where(behind, 0.0, torque)}
 
 
 def at_motor(signals: Signals, motor: int, torque: np.ndarray) -> dict[str, np.ndarray]:

@@ -37,6 +37,9 @@ def test_before_a_sensor_behind_the_gear_drives_show_and_links_do_not(
     signals = pendulum(wrong, **SENSOR)
     trace = effect(identifier).trace(signals, "swing", np.array([values]))
     assert set(trace) == {"drive"}
+    assert set(effect(identifier).trace(signals, "swing", effect(identifier).nulls[None])) == {
+        "drive"
+    }
     assert misfit(signals, trace, "drive") < least
     torque = np.std(signals.believed[signals.valid])
     assert np.std(signals.residual["motion"][signals.valid]) < 0.05 * torque

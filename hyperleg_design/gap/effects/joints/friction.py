@@ -22,7 +22,7 @@ temperature and wear from day to day, and most else of a robot does not (develop
 class ModelledFriction(JointTorque):
     """Friction that is as well known as the model's: its first parameter is its size."""
 
-    of_drive: ClassVar[bool] = True
+    resists: ClassVar[bool] = True
     model_spread: ClassVar[float] = 0.08
     """Usual error of the model's friction, over it."""
 

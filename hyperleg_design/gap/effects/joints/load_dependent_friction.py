@@ -35,7 +35,7 @@ class LoadDependentFriction(JointTorque):
     """
 
     identifier: ClassVar[str] = "load_dependent_friction"
-    of_drive: ClassVar[bool] = True
+    resists: ClassVar[bool] = True
     by_load: ClassVar[bool] = True
     nuisance_rank: ClassVar[int] = 3
     summary: ClassVar[str] = "a joint resists motion with a share of the torque that it transmits"
