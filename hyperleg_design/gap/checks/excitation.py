@@ -10,7 +10,7 @@ import numpy as np
 
 from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.effects.excitation import Excitation, Motion
+from hyperleg_design.gap.effects.excitation import Excitation, Motion, beside_sensors
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.sampling import quantum
 from hyperleg_design.gap.model.joint_units import slides
@@ -33,7 +33,8 @@ def excitation_of(log: Log, subject: Subject | None = None) -> tuple[Excitation,
         One entry for each effect of the catalogue.
     """
     motion = motion_of(log, subject)
-    return tuple(effect.excited(log, motion) for effect in EFFECTS.values())
+    excited = (effect.excited(log, motion) for effect in EFFECTS.values())
+    return tuple(beside_sensors(excitation, log, motion) for excitation in excited)
 
 
 def motion_of(log: Log, subject: Subject | None) -> Motion:

@@ -140,7 +140,11 @@ class TorqueConstant(MotorEffect):
     @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
         motors = tuple(
-            m for m in log.motors if log.has("motor_current", m) or log.has("motor_torque", m)
+            m
+            for m in log.motors
+            if log.has("motor_current", m)
+            or log.has("motor_torque", m)
+            or (m in log.metadata.torque_sensors and log.has("motor_torque_command", m))
         )
         if not motors:
             why = "no current and no motor torque: not told from controller_gain or payload"
