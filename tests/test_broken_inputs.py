@@ -308,7 +308,7 @@ CASES: list[tuple[tuple[str, ...], tuple[str, ...]]] = [
     (("evaluate", POLICY, "--protocol", "folder.yaml", *OUT), ("folder.yaml", "is a folder")),
     (("evaluate", "folder.yaml", *OUT), ("folder.yaml", "without policy.onnx")),
     (("paper", "--policies", "folder.yaml", *OUT), ("folder.yaml", "no finished training")),
-    (("variants", "walk_any-mini_cheetah-0", *OUT), ("mini_cheetah: no such field", "toe.mass")),
+    (("variants", "walk_any-mini_cheetah-0", *OUT), ("toe layouts, not mini_cheetah", "--designs")),
     (("analyze", "--out", "notes.txt/page"), ("notes.txt", "is a file")),
     (("evaluate", POLICY, "--logs", "notes.txt/logs", *OUT), ("notes.txt", "is a file")),
     # the gap's verbs

@@ -122,7 +122,8 @@ class DesignSpread:
                 "design ranges",
                 "variants",
                 list(self.variants),
-                f"expects a robot of one of these toe layouts, not {base.variant or base.name}",
+                f"expects a robot of one of these toe layouts, not {base.variant or base.name}; "
+                f"--designs names other ranges",
             )
 
     def _has_effect(self, path: str, base: RobotDesign, physics: Physics) -> bool:
