@@ -57,12 +57,8 @@ class DesignSpread:
         Returns:
             Nested mappings.
         """
-        variants = list(self.variants)
-        return {
-            **dataclasses.asdict(self),
-            "ranges": self.ranges.to_mapping(),
-            "variants": variants,
-        }
+        written = {"ranges": self.ranges.to_mapping(), "variants": list(self.variants)}
+        return {**dataclasses.asdict(self), **written}
 
     def designs(self, base: RobotDesign) -> RobotDesign:
         """Draw the pool of designs for training.

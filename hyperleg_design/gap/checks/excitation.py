@@ -5,12 +5,15 @@ under which load, what was measured.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.effects.excitation import Excitation, Motion, beside_sensors
+from hyperleg_design.gap.effects.effect import Effect
+from hyperleg_design.gap.effects.excitation import Excitation, Motion
+from hyperleg_design.gap.effects.kinds import GearEffect, before_sensors
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.sampling import quantum
 from hyperleg_design.gap.model.joint_units import slides
@@ -33,8 +36,36 @@ def excitation_of(log: Log, subject: Subject | None = None) -> tuple[Excitation,
         One entry for each effect of the catalogue.
     """
     motion = motion_of(log, subject)
-    excited = (effect.excited(log, motion) for effect in EFFECTS.values())
-    return tuple(beside_sensors(excitation, log, motion) for excitation in excited)
+    return tuple(
+        beside_sensors(effect.excited(log, motion), effect, log, motion)
+        for effect in EFFECTS.values()
+    )
+
+
+def beside_sensors(excitation: Excitation, effect: Effect, log: Log, motion: Motion) -> Excitation:
+    """Leave out the joints at which torque sensors behind the gears hide an effect.
+
+    Args:
+        excitation: what the log can show of the effect otherwise.
+        effect: the effect.
+        log: as it was read.
+        motion: facts of it.
+
+    Returns:
+        What it can show. Gears are not judged there, and what acts before a sensor shows only
+        beside what was asked for.
+    """
+    hidden = {name for name in log.metadata.torque_sensors if log.has("joint_torque", name)}
+    why = "torque sensors behind the gears: play, belts and ratios are not judged"
+    if before_sensors(effect):
+        hidden -= set(motion.joints[motion.asked].tolist())
+        why = "torque sensors behind the gears, and no command tells what acts before them"
+    elif not isinstance(effect, GearEffect):
+        return excitation
+    where = tuple(name for name in excitation.where if name not in hidden)
+    if len(where) == len(excitation.where):
+        return excitation
+    return replace(excitation, shown=bool(where), where=where, why=excitation.why if where else why)
 
 
 def motion_of(log: Log, subject: Subject | None) -> Motion:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from hyperleg_design.gap.effects.families import IN_GEARS, RESISTING
 from hyperleg_design.gap.logs.log import Log
 
 REVERSALS = 4
@@ -141,31 +140,6 @@ def by_speeds(effect: str, log: Log, motion: Motion) -> Excitation | None:
     if motors and (motion.reversals > 0).any():
         return Excitation(effect, True, motors, "speeds of motors and joints")
     return None
-
-
-def beside_sensors(excitation: Excitation, log: Log, motion: Motion) -> Excitation:
-    """Leave out the joints at which torque sensors behind the gears hide an effect.
-
-    Args:
-        excitation: what the log can show of the effect otherwise.
-        log: as it was read.
-        motion: facts of it.
-
-    Returns:
-        What it can show. Gears are not judged there, and what resists before a sensor shows only
-        beside what was asked for.
-    """
-    hidden = {name for name in log.metadata.torque_sensors if log.has("joint_torque", name)}
-    why = "torque sensors behind the gears: play, belts and ratios are not judged"
-    if excitation.effect in RESISTING:
-        hidden -= set(motion.joints[motion.asked].tolist())
-        why = "torque sensors behind the gears, and no command tells what acts before them"
-    elif excitation.effect not in IN_GEARS:
-        return excitation
-    where = tuple(name for name in excitation.where if name not in hidden)
-    if len(where) == len(excitation.where):
-        return excitation
-    return replace(excitation, shown=bool(where), where=where, why=excitation.why if where else why)
 
 
 REVERSING = Need(

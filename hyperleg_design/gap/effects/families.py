@@ -35,9 +35,5 @@ BEYOND_COMMANDS = (
     | {"transmission_ratio", "backlash", "transmission_elasticity"}
 )
 """Effects between the torque that a drive measures and the motion of the joints."""
-IN_GEARS = frozenset({"transmission_ratio", "backlash", "transmission_elasticity"})
-"""Effects of gears and belts, of which a torque sensor behind them tells only what arrives."""
-RESISTING = FRICTION | {"rotor_inertia", "cogging"}
-"""Effects that take torque of a motor before such a sensor."""
 BESIDE_TRANSMISSIONS = FRICTION | INERTIAL | IN_DRIVES | AT_JOINTS
 """Effects under which rotors and joints keep their nominal ratio of speeds."""

@@ -80,6 +80,30 @@ class MotorTorque(MotorEffect):
         """
 
 
+class GearEffect(MotorEffect):
+    """An effect of a gear or a belt; a torque sensor behind it tells only what arrives there."""
+
+    @override
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        motor = signals.subject.motors.index(location)
+        if signals.sensed_behind[motor]:
+            return {}
+        return self._left(signals, motor, *np.atleast_2d(np.asarray(values, float)).T)
+
+    @abstractmethod
+    def _left(self, signals: Signals, motor: int, *values: Any) -> dict[str, np.ndarray]:
+        """The trace; each of the values `(k,)` is one parameter's."""
+
+
+def before_sensors(effect: Effect) -> bool:
+    """Tell whether an effect takes torque of a drive before a sensor that sits behind the gear.
+
+    Args:
+        effect: the effect.
+    """
+    return isinstance(effect, MotorTorque) or (isinstance(effect, JointTorque) and effect.resists)
+
+
 class FootEffect(Effect):
     """An effect that can sit under each foot of a robot that stands on its feet."""
 

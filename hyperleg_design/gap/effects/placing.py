@@ -44,9 +44,7 @@ def driven_motors(subject: Subject) -> tuple[str, ...]:
     Returns:
         Their names.
     """
-    if subject.one_to_one:
-        return tuple(compress(subject.motors, ~subject.passive))
-    return subject.motors
+    return tuple(compress(subject.motors, subject.driven))
 
 
 def at_joint(
@@ -207,8 +205,7 @@ def given(signals: Signals, motor: int) -> np.ndarray:
     """
     believed = signals.believed[:, motor]
     if signals.before_sensors is not None and signals.sensed_behind[motor]:
-        asked = is_commanded(signals, motor)
-        if asked:
+        if is_commanded(signals, motor):
             return limited(signals, motor, commanded(signals, motor))
         return believed + signals.before_sensors[:, motor]
     parts = _spring_and_damper(signals, motor)

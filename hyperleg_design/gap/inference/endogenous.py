@@ -147,7 +147,7 @@ def factors_of(
         return held_back(samples, scaling, location, values)
     if scaling.scales == "motor":
         motor = subject.motors.index(location)
-        joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
+        joint = subject.main_joint(motor)
     elif scaling.scales == "joint":
         joint = subject.joints.index(location)
         motor = int(np.argmax(np.abs(subject.joint_from_motor[joint])))

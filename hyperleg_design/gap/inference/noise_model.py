@@ -22,7 +22,7 @@ from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import Band, FilteredLog
 from hyperleg_design.gap.signals.ground import footings
 from hyperleg_design.gap.signals.signals import OF_SENSORS, Signals
-from hyperleg_design.gap.signals.sliding import dry_friction
+from hyperleg_design.gap.signals.sliding import dry_friction_in
 from hyperleg_design.gap.signals.stop_operator import stop
 
 NEAR = 0.5
@@ -127,7 +127,7 @@ def _turning(filtered_log: FilteredLog, row: int) -> np.ndarray:
     signals, place = filtered_log.signals, filtered_log.rows[row]
     joint = place.column
     if place.residual_name == "drive":
-        joint = int(np.argmax(np.abs(signals.subject.joint_from_motor[:, joint])))
+        joint = signals.subject.main_joint(joint)
     part = 1 - stop(signals.position[:, joint], TURNING) ** 2
     return _smoothed(part * filtered_log.mask[row], TURNING_TIME / signals.step)
 
@@ -147,10 +147,9 @@ def _loads(filtered_log: FilteredLog) -> tuple[dict[str, np.ndarray], dict[str, 
     moving: dict[str, np.ndarray] = {}
     still: dict[str, np.ndarray] = {}
     for residual_name, residual in signals.residual.items():
-        still[residual_name] = np.zeros(residual.shape[1])
+        still[residual_name] = dry_friction_in(signals, residual_name)
         if residual_name == "motion":
             moving[residual_name] = applied(subject.joint_from_motor, signals.believed)
-            still[residual_name] = _dry(signals, behind=False)
         elif residual_name == "base" and signals.contact is not None:
             total = np.linalg.norm(np.nan_to_num(signals.contact).sum(1), axis=-1)
             moving[residual_name] = np.stack([total] * 3 + [0.2 * total] * 3, -1)
@@ -162,20 +161,9 @@ def _loads(filtered_log: FilteredLog) -> tuple[dict[str, np.ndarray], dict[str, 
             moving[residual_name] = signals.velocity @ subject.joint_from_motor
         elif signals.command is not None and residual.shape[1] == signals.command.shape[1]:
             moving[residual_name] = signals.command
-            if residual_name == "drive" and signals.behind_gears is not None:
-                dry = _dry(signals, behind=True)
-                still[residual_name] = np.abs(subject.motor_from_joint) @ dry
         else:
             moving[residual_name] = residual
     return moving, still
-
-
-def _dry(signals: Signals, *, behind: bool) -> np.ndarray:
-    """Dry friction of the joints whose torque is, or is not, measured behind the gear `(n,)`."""
-    sensed = signals.behind_gears
-    if sensed is None:
-        return dry_friction(signals)
-    return np.where(sensed == behind, dry_friction(signals), 0.0)
 
 
 def _strength(filtered_log: FilteredLog, row: int) -> float:
@@ -214,9 +202,9 @@ def _of_acceleration(filtered_log: FilteredLog, row: int, low: float, high: floa
     differentiated, below the smoother's crossover `(t,)`.
     """
     signals, place = filtered_log.signals, filtered_log.rows[row]
-    nothing = np.zeros(len(signals.time))
+    variance = np.zeros(len(signals.time))
     if signals.noise is None:
-        return nothing
+        return variance
     square = _shaken(signals)
     turned = (2 * np.pi) ** 4 * (high**5 - low**5) / 5
     if place.residual_name == "drive" and signals.sensed_behind[place.column]:
@@ -228,8 +216,6 @@ def _of_acceleration(filtered_log: FilteredLog, row: int, low: float, high: floa
         variance = (
             turned * np.sum(own**2 * square, -1) + stiff**2 * (high - low) * square[:, place.column]
         )
-    else:
-        return nothing
     return np.asarray(
         _smoothed(2 * signals.step * variance, 0.5 / (high - low) / signals.step)
     )  # as long as a sample of the band sees

@@ -135,7 +135,7 @@ def moved_row(samples: Samples, location: str) -> tuple[int, int, int] | None:
     """
     subject = samples.filtered_logs[0].signals.subject
     motor = subject.motors.index(location)
-    joint = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
+    joint = subject.main_joint(motor)
     row = samples.motion_row(joint)
     return None if row is None else (motor, joint, row)
 

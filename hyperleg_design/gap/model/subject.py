@@ -142,6 +142,19 @@ class Subject:
         """
         return float(np.abs(self.joint_from_motor[:, motor]).max())
 
+    def main_joint(self, motor: int) -> int:
+        """Index of the joint that a motor moves most.
+
+        Args:
+            motor: index of the motor.
+        """
+        return int(np.argmax(np.abs(self.joint_from_motor[:, motor])))
+
+    @cached_property
+    def driven(self) -> np.ndarray:
+        """Motors that exist, which those of passive joints do not `(m,)`."""
+        return ~self.passive if self.one_to_one else np.ones(len(self.motors), bool)
+
     @cached_property
     def one_to_one(self) -> bool:
         """Whether each motor drives the joint of its own name and counts at it."""

@@ -207,7 +207,7 @@ def _joint(subject: Subject, location: str) -> int:
     if location in subject.joints:
         return subject.joints.index(location)
     if location in subject.motors:
-        return int(np.argmax(np.abs(subject.joint_from_motor[:, subject.motors.index(location)])))
+        return subject.main_joint(subject.motors.index(location))
     if location in subject.links:
         carrier = int(subject.tree.link_joint[subject.tree.link(location)])
         return max(carrier, 0)

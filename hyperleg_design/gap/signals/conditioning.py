@@ -35,6 +35,7 @@ from hyperleg_design.gap.signals.limit_cycle import LimitCycle, limit_cycle
 from hyperleg_design.gap.signals.sensed import sensed_velocity
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.smoothing import Smooth
+from hyperleg_design.gap.signals.torque_sensors import behind_gears, taken_before
 from hyperleg_design.simulation.drives import limits
 
 EDGE = 4.0
@@ -100,12 +101,9 @@ def condition(log: Log, subject: Subject) -> Signals:
         subject, ground, margin=int(np.ceil(_edge(motion, lacking) / step))
     )
     unknown = unknown | at_stop(subject, motion.value)
-    behind = _behind_gears(log, subject, measured)
-    before = None
+    behind, before = None if measured is None else behind_gears(log, subject), None
     if behind is not None:
-        swing = None if shaken is None else shaken.speed
-        taken = friction.rubbing_torque(subject, motion.first, swing)
-        taken = np.where(behind, taken + motion.second @ subject.armature.T, 0.0)
+        taken = taken_before(subject, behind, motion, shaken)
         needed, before = needed - taken, applied(subject.motor_from_joint, taken)
     residual["motion"] = np.where(
         unknown | lacking, np.nan, applied(subject.joint_from_motor, believed) - needed
@@ -217,7 +215,7 @@ def _drive_residual(
 ) -> tuple[np.ndarray, list[str]]:
     """Measured motor torques minus the commands within limits `(t, m)` [Nm], and notes."""
     drive = measured - limited
-    drive[:, ~_driven(subject)] = np.nan
+    drive[:, ~subject.driven] = np.nan
     copied = np.isfinite(drive).any(0) & ~np.nan_to_num(drive).any(0)
     if not copied.any():
         return drive, []
@@ -335,17 +333,13 @@ def _command(
         command = np.where(np.isfinite(command), command, torque)
     if subject.one_to_one and subject.passive.any():
         command[:, subject.passive] = 0.0
-    known = np.isfinite(command[:, _driven(subject)]).any()
+    known = np.isfinite(command[:, subject.driven]).any()
     return command if known else None, jump, target, control, others
 
 
 def _kept(log: Log) -> bool:
     """Whether targets are kept from row to row."""
     return (log.metadata.targets or ("kept" if log.step >= KEPT_FROM else "moving")) == "kept"
-
-
-def _driven(subject: Subject) -> np.ndarray:
-    return ~subject.passive if subject.one_to_one else np.ones(len(subject.motors), bool)
 
 
 def _measured(log: Log, subject: Subject, ticks: np.ndarray) -> np.ndarray | None:
@@ -362,20 +356,6 @@ def _measured(log: Log, subject: Subject, ticks: np.ndarray) -> np.ndarray | Non
     if subject.one_to_one:
         measured[:, subject.passive] = 0.0
     return measured
-
-
-def _behind_gears(log: Log, subject: Subject, measured: np.ndarray | None) -> np.ndarray | None:
-    """Joints whose torque a sensor behind the gear tells, and no signal of their motors `(n,)`;
-    None where there is none.
-    """
-    if measured is None or not log.metadata.torque_sensors:
-        return None
-    logged = of_motors(log, "motor_torque", subject), of_motors(log, "motor_current", subject)
-    own = np.isfinite(np.concatenate(logged)).any(0)
-    sensed = np.isin(subject.joints, log.metadata.torque_sensors)
-    sensed &= np.isfinite(log.stack("joint_torque", subject.joints)).any(0)
-    sensed &= ~(subject.joint_from_motor[:, own] != 0).any(1)
-    return sensed if sensed.any() else None
 
 
 def _believed(

@@ -206,12 +206,12 @@ def _joints_that_rub(signals: Signals) -> dict[tuple[str, int], int]:
     """Joints whose friction each row of a residual holds: its own, or, before a torque sensor
     behind the gear, the joint that a motor moves most.
     """
-    matrix, behind = signals.subject.joint_from_motor, signals.behind_gears
+    behind = signals.behind_gears
     if behind is None:
-        return {("motion", joint): joint for joint in range(len(matrix))}
+        return {("motion", joint): joint for joint in range(len(signals.subject.joints))}
     own = {("motion", joint): joint for joint in np.flatnonzero(~behind).tolist()}
     sensed = np.flatnonzero(signals.sensed_behind).tolist()
-    return own | {("drive", motor): int(np.argmax(np.abs(matrix[:, motor]))) for motor in sensed}
+    return own | {("drive", motor): signals.subject.main_joint(motor) for motor in sensed}
 
 
 def _cutoff(signals: Signals, residual_name: str, column: int) -> float:

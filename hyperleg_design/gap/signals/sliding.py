@@ -72,6 +72,27 @@ def dry_friction(signals: Signals) -> np.ndarray:
     return friction
 
 
+def dry_friction_in(signals: Signals, residual_name: str) -> np.ndarray:
+    """Dry friction that acts in each row of a residual: in the motion, or of joints whose torque is
+    measured behind the gear in the drive.
+
+    Args:
+        signals: conditioned log.
+        residual_name: such as `motion`.
+
+    Returns:
+        [Nm], `(rows,)`; 0 in other residuals.
+    """
+    behind = signals.behind_gears
+    if residual_name == "motion":
+        friction = dry_friction(signals)
+        return friction if behind is None else np.where(behind, 0.0, friction)
+    if residual_name == "drive" and behind is not None:
+        share = np.abs(signals.subject.motor_from_joint)
+        return np.asarray(share @ np.where(behind, dry_friction(signals), 0.0))
+    return np.zeros(signals.residual[residual_name].shape[1])
+
+
 @memoized
 def viscous_friction(signals: Signals) -> np.ndarray:
     """Viscous friction of each joint: the model's; where it has none, what the residual shows

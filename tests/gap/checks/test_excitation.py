@@ -1,11 +1,13 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 from rig import rig_log, spoiled
 
-from hyperleg_design.gap.checks.excitation import excitation_of, motion_of
+from hyperleg_design.gap.checks.excitation import beside_sensors, excitation_of, motion_of
 from hyperleg_design.gap.checks.rules import RULES
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.excitation import Excitation
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
 
@@ -172,3 +174,28 @@ def test_the_acceleration_of_a_slow_swing_is_that_of_its_sine():
     found = {e.effect: e for e in excitation_of(log.changed(signals=log.signals | without))}
     assert found["rotor_inertia"].shown
     assert not found["controller_gain"].shown
+
+
+@pytest.mark.parametrize(
+    ("effect", "asked", "where"),
+    [
+        ("backlash", True, ("b",)),
+        ("coulomb_friction", True, ("a", "b")),
+        ("coulomb_friction", False, ("b",)),
+        ("payload", False, ("a", "b")),
+    ],
+)
+def test_torque_sensors_behind_gears_hide_what_acts_before_them(effect, asked, where):
+    log = SimpleNamespace(
+        metadata=Metadata(torque_sensors=("a", "elsewhere")),
+        has=lambda kind, name: kind == "joint_torque" and name == "a",
+    )
+    one = EFFECTS[effect]
+    facts = SimpleNamespace(joints=np.array(["a", "b"]), asked=np.array([asked, True]))
+    found = beside_sensors(
+        Excitation(effect, True, ("a", "b"), "moves"), EFFECTS[effect], log, facts
+    )
+    assert (found.shown, found.where, found.why) == (True, where, "moves")
+    alone = beside_sensors(Excitation(effect, True, ("a",), "moves"), one, log, facts)
+    assert alone.shown == ("a" in where)
+    assert alone.why == "moves" if alone.shown else "torque sensors behind the gears" in alone.why

@@ -12,14 +12,11 @@ from hypothesis import strategies as st
 from hyperleg_design.gap.effects.excitation import (
     REVERSALS,
     SWING,
-    Excitation,
     Motion,
     Need,
-    beside_sensors,
     by_speeds,
     shown_by,
 )
-from hyperleg_design.gap.logs.metadata import Metadata
 
 JOINTS = np.array(["hip", "knee", "ankle"])
 FLAGS = st.lists(st.booleans(), min_size=3, max_size=3).map(np.array)
@@ -104,25 +101,3 @@ def test_speeds_of_motors_and_moving_joints_show_what_lies_between(motors, rever
     assert (None if found is None else found.where) == where
     either = shown_by("backlash", need(np.ones(3, bool), speeds=True), log, facts)
     assert either.where == (where or tuple(JOINTS))
-
-
-@pytest.mark.parametrize(
-    ("effect", "asked", "where"),
-    [
-        ("backlash", True, ("b",)),
-        ("coulomb_friction", True, ("a", "b")),
-        ("coulomb_friction", False, ("b",)),
-        ("payload", False, ("a", "b")),
-    ],
-)
-def test_torque_sensors_behind_gears_hide_what_acts_before_them(effect, asked, where):
-    log = SimpleNamespace(
-        metadata=Metadata(torque_sensors=("a", "elsewhere")),
-        has=lambda kind, name: kind == "joint_torque" and name == "a",
-    )
-    facts = SimpleNamespace(joints=np.array(["a", "b"]), asked=np.array([asked, True]))
-    found = beside_sensors(Excitation(effect, True, ("a", "b"), "moves"), log, facts)
-    assert (found.shown, found.where, found.why) == (True, where, "moves")
-    alone = beside_sensors(Excitation(effect, True, ("a",), "moves"), log, facts)
-    assert alone.shown == ("a" in where)
-    assert alone.why == "moves" if alone.shown else "torque sensors behind the gears" in alone.why

@@ -121,7 +121,7 @@ class Cogging(MotorTorque):
         """
         subject = signals.subject
         motor = subject.motors.index(location)
-        main = int(np.argmax(np.abs(subject.joint_from_motor[:, motor])))
+        main = subject.main_joint(motor)
         ratio = subject.joint_from_motor[main, motor]
         residual = signals.resisting[:, main] / ratio
         known = np.isfinite(residual) & signals.valid

@@ -96,7 +96,7 @@ class RotorInertia(MotorTorque):
         motor = subject.motors.index(location)
         own = float(subject.rotor_inertia[motor])
         column = subject.joint_from_motor[:, motor]
-        main = int(np.argmax(np.abs(column)))
+        main = subject.main_joint(motor)
         least = OF_ITS_JOINT * float(joint_inertia(subject)[main]) / column[main] ** 2
         if own <= 0:
             own = motor_strength(subject, motor) / ACCELERATION

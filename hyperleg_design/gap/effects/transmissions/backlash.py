@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Set
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import REVERSING, Need
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
-from hyperleg_design.gap.effects.kinds import MotorEffect
+from hyperleg_design.gap.effects.kinds import GearEffect
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import SIDES
 from hyperleg_design.gap.effects.transmissions import belt, slack
@@ -24,7 +24,7 @@ from hyperleg_design.simulation.drives.two_mass import STIFFEST, Belt
 COASTING = ("a rotor that the load carries over", "a rotor that crosses by itself")
 
 
-class Backlash(MotorEffect):
+class Backlash(GearEffect):
     """A motor turns freely through a small angle before its joints follow; see `belt`.
 
     The angle is the whole width of the dead zone, at the joint that the motor moves most. While the
@@ -53,11 +53,8 @@ class Backlash(MotorEffect):
     }
 
     @override
-    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        motor = signals.subject.motors.index(location)
-        if signals.sensed_behind[motor]:  # the sensor tells what arrives behind the gear
-            return {}
-        angle, side, coasting, behind = np.atleast_2d(np.asarray(values, float)).T
+    def _left(self, signals: Signals, motor: int, *values: Any) -> dict[str, np.ndarray]:
+        angle, side, coasting, behind = values
         moved = slack.slack(
             signals, motor, angle * signals.subject.motor_over_joint(motor), side, coasting, behind
         )

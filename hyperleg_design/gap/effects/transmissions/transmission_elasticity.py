@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Set
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import Need
 from hyperleg_design.gap.effects.families import BESIDE_TRANSMISSIONS, FRICTION, LATE
-from hyperleg_design.gap.effects.kinds import MotorEffect
+from hyperleg_design.gap.effects.kinds import GearEffect
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import SIDES
 from hyperleg_design.gap.effects.transmissions import belt
@@ -37,7 +37,7 @@ DAMPING_RATIO_SOURCE = "steel-corded belts ring for a few periods (assumed)"
 STIFFENING_SOURCE = "gears are two to three times as stiff beyond some mrad (data sheets)"
 
 
-class TransmissionElasticity(MotorEffect):
+class TransmissionElasticity(GearEffect):
     """A motor and its joints are joined by a spring, on the motor's side of the transmission; see
     `belt`.
 
@@ -77,12 +77,8 @@ class TransmissionElasticity(MotorEffect):
         return bool(values[SIDE] >= belt.CHOSEN and (values[3] >= belt.CHOSEN or values[4] > 0))
 
     @override
-    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
-        motor = signals.subject.motors.index(location)
-        if signals.sensed_behind[motor]:  # the sensor tells what arrives behind the gear
-            return {}
-        settings = np.atleast_2d(np.asarray(values, float)).T
-        compliance, damping_ratio, side, behind, stiffening = settings
+    def _left(self, signals: Signals, motor: int, *values: Any) -> dict[str, np.ndarray]:
+        compliance, damping_ratio, side, behind, stiffening = values
         load, transmitted = belt.load(signals, motor), belt.transmitted(signals, motor)
         moved = belt.stretch(signals, load, motor, compliance, damping_ratio, stiffening)
         bent = (stiffening > 0) | (behind >= belt.CHOSEN)

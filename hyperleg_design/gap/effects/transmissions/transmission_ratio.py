@@ -17,7 +17,7 @@ from hyperleg_design.gap.effects.families import (
     WITH_LOAD,
     WITHOUT_DRIVE,
 )
-from hyperleg_design.gap.effects.kinds import MotorEffect
+from hyperleg_design.gap.effects.kinds import GearEffect
 from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import SIDES, at_motor, given, motor_velocity
@@ -32,7 +32,7 @@ from hyperleg_design.simulation.drives.machine import Machine
 SCALE_SOURCE = "linkages off their design point, one tooth of 40 on a pulley (assumed)"
 
 
-class TransmissionRatio(MotorEffect):
+class TransmissionRatio(GearEffect):
     """A motor turns `scale` times as fast over its joints as the model says, and pulls on them
     `scale` times as hard.
 
@@ -73,12 +73,9 @@ class TransmissionRatio(MotorEffect):
     }
 
     @override
-    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+    def _left(self, signals: Signals, motor: int, *values: Any) -> dict[str, np.ndarray]:
         subject = signals.subject
-        motor = subject.motors.index(location)
-        if signals.sensed_behind[motor]:  # the sensor tells what arrives behind the gear
-            return {}
-        scale, side = np.atleast_2d(np.asarray(values, float)).T[..., None]
+        scale, side = (value[:, None] for value in values)
         rotor = subject.rotor_inertia[motor] * (
             signals.acceleration @ subject.joint_from_motor[:, motor]
         )
