@@ -68,7 +68,7 @@ class Replay:
 
 def best_input(signals: Signals) -> str:
     """Choose what a replay of a log follows by itself: targets where all gains are known, else
-    torques.
+    torques; commands where sensors behind the gears do not tell the torque of the motors.
 
     Args:
         signals: conditioned log.
@@ -77,10 +77,6 @@ def best_input(signals: Signals) -> str:
         One of `INPUTS`.
     """
     subject = signals.subject
-    if signals.behind_gears is not None and signals.command is not None:
-        known = np.isfinite(signals.command).any(0)
-        if signals.target is None and known[~subject.passive if subject.one_to_one else ...].all():
-            return "command"
     if signals.target is not None:
         driven = ~subject.passive & np.isfinite(signals.target).any(0)
         if (
@@ -89,6 +85,9 @@ def best_input(signals: Signals) -> str:
             and (driven | subject.passive).all()
         ):
             return "target"
+    command = signals.command if signals.behind_gears is not None else None
+    if command is not None and np.isfinite(command[:, subject.driven]).any(0).all():
+        return "command"
     return "torque"
 
 

@@ -34,6 +34,9 @@ def test_logs_of_torque_sensors_behind_gears_are_replayed_by_commands(robot_file
     log = robots.with_torque_sensors(runs["coupled"])
     one = condition(log, load_subject(robot_files["coupled"], [log]))
     assert best_input(one) == "command"
+    targets = {f"position_target/{joint}": log.column(f"position/{joint}") for joint in log.joints}
+    aimed = log.changed(signals=log.signals | targets)  # whose gains nobody declares
+    assert best_input(condition(aimed, load_subject(robot_files["coupled"], [aimed]))) == "command"
     for follow in ("", "torque"):
         position, _ = replay(one, follow=follow).errors(one)
         assert (rms(position) < 2e-3).all()
