@@ -15,6 +15,7 @@ from hyperleg_design.gap.checks.excitation import excitation_of
 from hyperleg_design.gap.checks.gates import unusable
 from hyperleg_design.gap.checks.plausibility import implausible
 from hyperleg_design.gap.checks.rules import RULES
+from hyperleg_design.gap.checks.zeros import zeroed
 from hyperleg_design.gap.effects.excitation import Excitation
 from hyperleg_design.gap.logs.columns import JOINT_SIGNALS, MOTOR_SIGNALS, unit
 from hyperleg_design.gap.logs.log import Log
@@ -132,6 +133,7 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
         *_columns(columns, sampling),
         *(implausible(log, subject) if measured else ()),
         *declarations(log.metadata, subject),
+        *(zeroed(log, subject) if measured and subject is not None else ()),
     ]
     ordered = tuple(sorted(_merged(findings), key=lambda f: SEVERITIES.index(f.severity)))
     return Check(

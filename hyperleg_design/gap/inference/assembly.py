@@ -28,6 +28,7 @@ from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import FilteredLog, place_of
 from hyperleg_design.gap.signals.signals import OF_SENSORS, Signals
 from hyperleg_design.gap.signals.sliding import dry_friction, viscous_friction
+from hyperleg_design.gap.signals.zeroing import zero_spread
 
 MOST_BANDS = 5
 """Bands of a channel, see `filtering.EDGES`."""
@@ -213,9 +214,16 @@ def evidence_of(
     """
     subject, healthy = tests[0].subject, (*references, *tests)[0]
     rubbing = replace(subject, coulomb=dry_friction(healthy), viscous=viscous_friction(healthy))
-    errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), rubbing)
-    errors.sort(key=lambda error: not error.steady)
-    sets = [_set(tests, errors, rules, tested=True)]
+
+    def errors(logs: Sequence[Signals]) -> list[list[nuisance.NuisanceParameter]]:
+        by_log = []
+        for signals in logs:
+            zeroed = replace(rubbing, zero_spread=zero_spread(signals.log, rubbing))
+            own = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), zeroed)
+            by_log.append(sorted(own, key=lambda error: not error.steady))
+        return by_log
+
+    sets = [_set(tests, errors(tests), rules, tested=True)]
     if all(row.residual_name in OF_SENSORS for row in sets[0].samples.rows):
         raise InputError(
             tests[0].log.name,
@@ -224,7 +232,9 @@ def evidence_of(
             "has too few ticks of which torques and motion are known: log longer, or more signals",
         )
     if references:
-        sets.append(_set(references, errors, rules, tested=False))
+        sets.append(_set(references, errors(references), rules, tested=False))
+    zeros = np.min([zero_spread(signals.log, rubbing) for signals in tests], 0)
+    rubbing = replace(rubbing, zero_spread=zeros)
     keys = [(row.residual_name, row.column) for row in sets[0].samples.rows]
     channels = [_channel(key, sets, rules) for key in keys]
     return Evidence(
@@ -267,7 +277,7 @@ def _joined(sets: Sequence[_Set], rules: InferenceRules) -> Samples:
 
 def _set(
     signals: Sequence[Signals],
-    errors: Sequence[nuisance.NuisanceParameter],
+    errors: Sequence[Sequence[nuisance.NuisanceParameter]],
     rules: InferenceRules,
     tested: bool,
 ) -> _Set:
@@ -277,12 +287,12 @@ def _set(
     order = list(dict.fromkeys(names))
     sessions = [order.index(name) for name in names]
     samples = gather(filtered_logs, floors, sessions, rules.noise.information)
-    columns = np.zeros((len(errors), len(samples.value)))
-    for filtered, places in zip(filtered_logs, samples.where, strict=True):
-        for row, traces in nuisance_traces.columns(filtered, errors).items():
+    columns = np.zeros((len(errors[0]), len(samples.value)))
+    for filtered, places, own in zip(filtered_logs, samples.where, errors, strict=True):
+        for row, traces in nuisance_traces.columns(filtered, own).items():
             columns[:, places[row]] = traces
-    columns[[error.inertial for error in errors]] *= samples.felt
-    steady = sum(error.steady for error in errors)
+    columns[[error.inertial for error in errors[0]]] *= samples.felt
+    steady = sum(error.steady for error in errors[0])
     return _Set(filtered_logs, samples, floors, columns, steady, tested)
 
 
