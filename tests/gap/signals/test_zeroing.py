@@ -23,9 +23,7 @@ def pendulum(folder, links=1, quat="1 0 0 0"):
         quat = "1 0 0 0"
     motors = "".join(f'<motor name="j{n}" joint="j{n}"/>' for n in range(links))
     path = folder / "pendulum.xml"
-    path.write_text(
-        f"<mujoco><worldbody>{inner}</worldbody><actuator>{motors}</actuator></mujoco>"
-    )
+    path.write_text(f"<mujoco><worldbody>{inner}</worldbody><actuator>{motors}</actuator></mujoco>")
     return load_subject(path)
 
 
