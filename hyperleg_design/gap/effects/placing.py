@@ -69,7 +69,7 @@ def at_joint(
     return {"motion": rows.swapaxes(1, 2)}
 
 
-def resisting(signals: Signals, torque: np.ndarray) -> dict[str, np.ndarray]:
+def friction_trace(signals: Signals, torque: np.ndarray) -> dict[str, np.ndarray]:
     """Trace of torques that friction takes at all joints, beyond the model.
 
     Args:

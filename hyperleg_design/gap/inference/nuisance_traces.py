@@ -11,10 +11,10 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.effect import LOGGED, NEEDED, STEERED
 from hyperleg_design.gap.effects.placing import (
     before_measurement,
+    friction_trace,
     is_commanded,
     is_logged,
     motor_velocity,
-    resisting,
 )
 from hyperleg_design.gap.effects.series import first_derivative
 from hyperleg_design.gap.effects.transmissions import belt
@@ -144,7 +144,7 @@ def _stepped(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray
         subject.friction_speed,
     )
     smooth = subject.coulomb * friction.turned(signals.velocity, subject.friction_speed)
-    return resisting(signals, error.spread * (damping * (signals.velocity + half) - smooth))
+    return friction_trace(signals, error.spread * (damping * (signals.velocity + half) - smooth))
 
 
 def _filtered(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
@@ -221,7 +221,7 @@ def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
     turned = friction.turned(signals.velocity[:, j], subject.friction_speed[j], swing)
     shape = stop(signals.position[:, j], WAYS[way - 1]) - at_once if way else at_once - turned
     rows[:, j] = np.maximum(dry_friction(signals), least_friction(subject))[j] * shape
-    return resisting(signals, rows)
+    return friction_trace(signals, rows)
 
 
 def _swung(signals: Signals, joint: str, place: int) -> dict[str, np.ndarray]:
@@ -239,7 +239,7 @@ def _swung(signals: Signals, joint: str, place: int) -> dict[str, np.ndarray]:
     rows[:, j] = subject.coulomb[j] * (
         friction.turned(speed, width, SWINGS[place] * swing) - friction.turned(speed, width, swing)
     )
-    return resisting(signals, rows)
+    return friction_trace(signals, rows)
 
 
 def columns(
