@@ -5,7 +5,7 @@ and its way into the simulation.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from typing import ClassVar
 
 import numpy as np
@@ -216,6 +216,18 @@ class Effect(ABC):
             Least and largest values `(2, parameters)`.
         """
         return np.array([[p.low for p in self.parameters], [p.high for p in self.parameters]])
+
+    def shown_bounds(self, logs: Sequence[Signals], location: str) -> np.ndarray:
+        """As `bounds`, without the values that logs in which it acts rule out.
+
+        Args:
+            logs: conditioned logs.
+            location: one of `locations`.
+
+        Returns:
+            Least and largest values `(2, parameters)`.
+        """
+        return self.bounds(location, logs[0].subject)
 
     def change_bounds(self, location: str, subject: Subject) -> np.ndarray:
         """As `bounds`, of a change since references, in which there may be what the model lacks.

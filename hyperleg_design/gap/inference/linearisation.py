@@ -35,7 +35,8 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     """
     subject = samples.filtered_logs[0].signals.subject
     usual = effect.usual(location, subject)
-    low, high = effect.bounds(location, subject)
+    logs = [filtered.signals for filtered in samples.filtered_logs]
+    low, high = effect.shown_bounds(logs, location)
     nulls = effect.nulls
     k = len(nulls)
     shape = np.array([p.shape for p in effect.parameters])

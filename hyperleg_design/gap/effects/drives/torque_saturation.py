@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Set
+from collections.abc import Mapping, Sequence, Set
 from typing import ClassVar
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.excitation import Need
@@ -31,6 +32,9 @@ _NEEDED = 0.95
 LEAST = 0.03
 """Limit over the torque that the motor is made for (assumed: current limits of 5 % are set by
 nobody)."""
+HELD, SENSED = 3, 1.1
+"""Ticks in a row in which a measured torque is no outlier, and how much too large a sensor may tell
+it [-] (assumed)."""
 SOURCE = "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor"
 
 
@@ -99,6 +103,18 @@ class TorqueSaturation(MotorEffect):
         """A drive that gives next to nothing is no limited one."""
         low, high = super().bounds(location, subject)
         return np.array([low, np.minimum(high, 1 / (LEAST * self.strength(location, subject)))])
+
+    @override
+    def shown_bounds(self, logs: Sequence[Signals], location: str) -> np.ndarray:
+        """No limit is below the torque that was measured, or by an error of the sensor."""
+        low, high = super().shown_bounds(logs, location)
+        motor = logs[0].subject.motors.index(location)
+        for signals in logs:
+            if signals.measured is not None:
+                torque = np.nan_to_num(np.abs(signals.measured[:, motor]))
+                most = float(sliding_window_view(torque, HELD).min(1).max())
+                high = np.minimum(high, SENSED / max(most, 1e-9))
+        return np.array([low, high])
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:

@@ -111,8 +111,7 @@ class HypothesisFit:
             return Candidate(proposal.effect, proposal.location, (traced[proposal.variant],))
         assert not isinstance(traced, NotJudged)
         effect = WEIGHED[proposal.effect]
-        subject = self.evidence.signals[0].subject
-        low, high = effect.bounds(proposal.location, subject)
+        low, high = effect.bounds(proposal.location, self.evidence.signals[0].subject)
         values = np.array(proposal.values, float)
         scales: Sequence[Scales] = current.scales  # what changed must not bend what is lacking
         if not proposal.standing:

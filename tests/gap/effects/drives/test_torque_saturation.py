@@ -1,9 +1,11 @@
+import dataclasses
+
 import numpy as np
 import pytest
 from pendulum import Wrong, misfit
 
 from hyperleg_design.gap.effects import effect
-from hyperleg_design.gap.effects.drives.torque_saturation import LEAST
+from hyperleg_design.gap.effects.drives.torque_saturation import LEAST, SENSED
 
 SATURATION = effect("torque_saturation")
 
@@ -42,8 +44,6 @@ def test_people_read_the_limit(pendulum):
 
 
 def test_without_commands_there_is_no_trace(pendulum):
-    import dataclasses
-
     signals = dataclasses.replace(pendulum(Wrong()), command=None)
     assert SATURATION.trace(signals, "swing", np.array([[1.0]])) == {}
 
@@ -55,3 +55,19 @@ def test_a_drive_that_gives_next_to_nothing_is_no_limited_one(pendulum):
     assert low == 0
     assert 1 / high == pytest.approx(LEAST * strength)
     assert np.all(SATURATION.starts(signals, "swing") <= high)
+
+
+def test_no_limit_is_below_a_torque_that_was_measured(pendulum):
+    signals = pendulum(Wrong())
+    low, high = SATURATION.bounds("swing", signals.subject)
+
+    def bounds(held):
+        torque = np.zeros_like(signals.command)
+        torque[100 : 100 + held, 0] = -1.5
+        changed = dataclasses.replace(signals, measured=torque)
+        return SATURATION.shown_bounds([changed], "swing")
+
+    np.testing.assert_allclose(bounds(3), [low, [SENSED / 1.5]])
+    np.testing.assert_array_equal(bounds(2), [low, high])
+    unknown = dataclasses.replace(signals, measured=None)
+    np.testing.assert_array_equal(SATURATION.shown_bounds([unknown], "swing"), [low, high])
