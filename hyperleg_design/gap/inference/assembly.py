@@ -23,12 +23,12 @@ from hyperleg_design.gap.inference.channels.rotation import rotated
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import SLOWEST_BANDS, Samples, gather
+from hyperleg_design.gap.inference.zeros import Zeros
 from hyperleg_design.gap.signals import filtering, resting
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import FilteredLog, place_of
 from hyperleg_design.gap.signals.signals import OF_SENSORS, Signals
 from hyperleg_design.gap.signals.sliding import dry_friction, viscous_friction
-from hyperleg_design.gap.signals.zeroing import zero_spread
 
 MOST_BANDS = 5
 """Bands of a channel, see `filtering.EDGES`."""
@@ -149,8 +149,10 @@ class _Set:
     """Expected noise of each log and row."""
     errors: np.ndarray
     """Columns of the nuisance parameters, steady ones first `(p, S)`."""
+    known: int
+    """Number of columns, the first ones, whose deviation is known."""
     steady: int
-    """Number of nuisance parameters that are the same in all sessions."""
+    """Number of columns of parameters that are the same in all sessions, those included."""
     tested: bool
 
     def row(self, key: tuple[str, int]) -> int | None:
@@ -215,15 +217,10 @@ def evidence_of(
     subject, healthy = tests[0].subject, (*references, *tests)[0]
     rubbing = replace(subject, coulomb=dry_friction(healthy), viscous=viscous_friction(healthy))
 
-    def errors(logs: Sequence[Signals]) -> list[list[nuisance.NuisanceParameter]]:
-        by_log = []
-        for signals in logs:
-            zeroed = replace(rubbing, zero_spread=zero_spread(signals.log, rubbing))
-            own = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), zeroed)
-            by_log.append(sorted(own, key=lambda error: not error.steady))
-        return by_log
-
-    sets = [_set(tests, errors(tests), rules, tested=True)]
+    errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), rubbing)
+    errors.sort(key=lambda error: not error.steady)
+    zeros = Zeros.of(tests, references, rubbing)
+    sets = [_set(tests, errors, zeros, rules, tested=True)]
     if all(row.residual_name in OF_SENSORS for row in sets[0].samples.rows):
         raise InputError(
             tests[0].log.name,
@@ -232,9 +229,8 @@ def evidence_of(
             "has too few ticks of which torques and motion are known: log longer, or more signals",
         )
     if references:
-        sets.append(_set(references, errors(references), rules, tested=False))
-    zeros = np.min([zero_spread(signals.log, rubbing) for signals in tests], 0)
-    rubbing = replace(rubbing, zero_spread=zeros)
+        sets.append(_set(references, errors, zeros, rules, tested=False))
+    rubbing = replace(rubbing, zero_spread=zeros.usual)
     keys = [(row.residual_name, row.column) for row in sets[0].samples.rows]
     channels = [_channel(key, sets, rules) for key in keys]
     return Evidence(
@@ -277,7 +273,8 @@ def _joined(sets: Sequence[_Set], rules: InferenceRules) -> Samples:
 
 def _set(
     signals: Sequence[Signals],
-    errors: Sequence[Sequence[nuisance.NuisanceParameter]],
+    errors: Sequence[nuisance.NuisanceParameter],
+    zeros: Zeros,
     rules: InferenceRules,
     tested: bool,
 ) -> _Set:
@@ -287,13 +284,15 @@ def _set(
     order = list(dict.fromkeys(names))
     sessions = [order.index(name) for name in names]
     samples = gather(filtered_logs, floors, sessions, rules.noise.information)
-    columns = np.zeros((len(errors[0]), len(samples.value)))
-    for filtered, places, own in zip(filtered_logs, samples.where, errors, strict=True):
-        for row, traces in nuisance_traces.columns(filtered, own).items():
+    apart = zeros.columns(filtered_logs, samples, tested)
+    columns = np.zeros((len(errors), len(samples.value)))
+    for filtered, places in zip(filtered_logs, samples.where, strict=True):
+        for row, traces in nuisance_traces.columns(filtered, errors).items():
             columns[:, places[row]] = traces
-    columns[[error.inertial for error in errors[0]]] *= samples.felt
-    steady = sum(error.steady for error in errors[0])
-    return _Set(filtered_logs, samples, floors, columns, steady, tested)
+    columns[[error.inertial for error in errors]] *= samples.felt
+    steady = len(apart) + sum(error.steady for error in errors)
+    columns = np.concatenate([apart, columns])
+    return _Set(filtered_logs, samples, floors, columns, len(apart), steady, tested)
 
 
 def _channel(
@@ -337,9 +336,9 @@ def _channel(
             cells.append(((number, s), (number, b), number_of, first + own[mine]))
     sessions = sorted({cell[0] for cell in cells})
     bands = sorted({cell[1] for cell in cells})
-    white, steady = rotated(
-        white, sets[0].steady if len(sessions) > 1 else 0, rules.discrepancy.truncation
-    )
+    known = sets[0].known
+    steady = sets[0].steady if len(sessions) > 1 else known
+    white, known, steady = rotated(white, known, steady, rules.discrepancy.truncation)
     channel = Channel(
         residual=key[0],
         column=key[1],
@@ -353,6 +352,7 @@ def _channel(
         places=tuple(cell[3] for cell in cells),
         whitened=tuple(white),
         steady=steady,
+        known=known,
     )
     return channel, moved
 

@@ -55,6 +55,7 @@ def references():
 def test_zeros_that_friction_leaves_uncertain_are_no_fault(robot, references):
     found = diagnose(robot, [log("now", 0.06, 3)], reference=references, threads=1)
     assert found.verdict == "none"
+    assert not found.reference_differences
 
 
 def test_an_encoder_that_reads_otherwise_where_its_joint_hangs_is_one(robot, references):

@@ -64,8 +64,8 @@ class EncoderOffset(JointEffect):
     look_alikes: ClassVar[Mapping[str, str]] = {"link_com": "several postures"}
 
     @override
-    def nuisance_spreads(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        usual = super().nuisance_spreads(subject, step)
+    def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        usual = super().usual_errors(subject, step)
         if subject.zero_spread is None:
             return usual
         of_zeros = dict(zip(subject.joints, subject.zero_spread, strict=True))

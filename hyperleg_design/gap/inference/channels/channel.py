@@ -58,6 +58,8 @@ class Channel:
     """Discrepancy columns and residual of each cell `(k + 1, samples)`."""
     steady: int = 0
     """Number of discrepancy columns, the first ones, that are the same in all sessions."""
+    known: int = 0
+    """Number of these, the first ones, whose deviation is known."""
 
     @property
     def columns(self) -> int:
@@ -271,13 +273,13 @@ class Channel:
     def _spectra(self) -> Callable[[bytes], Spectrum]:
         """Spectra at the noise that some bytes hold."""
         products = np.ascontiguousarray(self.products[:, :-1, :-1])
-        tested, band, steady = self.tested, self.band, self.steady
+        tested, band, steady, known = self.tested, self.band, self.steady, self.known
         sessions = self.session == np.arange(len(tested))[:, None]
 
         @lru_cache(maxsize=NOISES)
         def spectrum(noise: bytes) -> Spectrum:
             share = sessions / np.frombuffer(noise)[band]
-            return Spectrum(np.tensordot(share, products, 1), tested, steady)
+            return Spectrum(np.tensordot(share, products, 1), tested, steady, known)
 
         return spectrum
 
@@ -346,7 +348,8 @@ class Channel:
         turned, shrunk = spectrum.turned(cross), spectrum.shrunk(change)
         shared, _ = dtrtrs(
             spectrum.factor(change, scales.standing),
-            np.exp(scales.standing) * spectrum.left(change, cross, turned),
+            spectrum.standing_scales(scales.standing)[:, None]
+            * spectrum.left(change, cross, turned),
             lower=1,
         )
         alone = (change[:, None] * np.sqrt(shrunk))[:, :, None] * turned

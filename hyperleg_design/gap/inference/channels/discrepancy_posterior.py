@@ -28,7 +28,8 @@ def discrepancy_posterior(
     cross = channel.summed(scales.noise, residual.cross)[:, :, None]
     turned = spectrum.turned(cross)
     inverse = np.linalg.inv(spectrum.factor(change, scales.standing))
-    shared = np.exp(2 * scales.standing) * (inverse.T @ inverse)
+    standing = spectrum.standing_scales(scales.standing)
+    shared = standing[:, None] * (inverse.T @ inverse) * standing
     mean = shared @ spectrum.left(change, cross, turned)
     across = spectrum.beside.swapaxes(1, 2)
     gained = axes * (change[:, None] ** 2 * spectrum.shrunk(change))[:, None, :]

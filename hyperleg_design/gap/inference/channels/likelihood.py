@@ -39,6 +39,6 @@ class Likelihood:
             self._parts[key] = cross, self.square - alone - float(np.log(shrunk).sum())
         cross, rest = self._parts[key]
         factor = self.spectrum.factor(change, standing)
-        taken, _ = dtrtrs(factor, np.exp(standing) * cross, lower=1)
+        taken, _ = dtrtrs(factor, self.spectrum.standing_scales(standing) * cross, lower=1)
         determinant = 2 * float(np.log(np.diag(factor)).sum())
         return -0.5 * (rest - float(taken @ taken) + determinant + self.spread)

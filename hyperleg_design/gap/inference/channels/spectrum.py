@@ -25,9 +25,13 @@ class Spectrum:
         tested: whether a session is under test; all sessions that are, and all that are not, have
             the same scale of the change `(sessions,)`.
         steady: number of columns that do not change.
+        known: number of these, the first ones, whose deviation is known, and no scale alters.
     """
 
-    def __init__(self, products: np.ndarray, tested: np.ndarray, steady: int = 0) -> None:
+    def __init__(
+        self, products: np.ndarray, tested: np.ndarray, steady: int = 0, known: int = 0
+    ) -> None:
+        self.known = known
         values, self.axes = np.linalg.eigh(products[:, steady:, steady:])
         self.steady, self.values = steady, np.maximum(values, 0.0)
         self.beside = products[:, :, steady:] @ self.axes
@@ -70,18 +74,29 @@ class Spectrum:
             self._whole - sum(gram(float(change[first])) for first, gram in self._groups)
         )
 
+    def standing_scales(self, standing: float) -> np.ndarray:
+        """Scales of the columns in the standing discrepancy `(k,)`.
+
+        Args:
+            standing: logarithm of the scale of those whose deviation is not known.
+        """
+        scales = np.full(len(self._whole), np.exp(standing))
+        scales[: self.known] = 1.0
+        return scales
+
     def factor(self, change: np.ndarray, standing: float) -> np.ndarray:
-        """Lower Cholesky factor of I + a^2 `gram` `(k, k)`.
+        """Lower Cholesky factor of I + A `gram` A, A the diagonal of `standing_scales` `(k, k)`.
 
         Args:
             change: scale of the change of each session `(sessions,)`.
             standing: logarithm of the scale a of the standing discrepancy.
         """
         key = change.tobytes(), standing
-        known = self._factor
-        if known is not None and known[0] == key:
-            return known[1]
-        whole = np.exp(2 * standing) * self.gram(change)
+        last = self._factor
+        if last is not None and last[0] == key:
+            return last[1]
+        scales = self.standing_scales(standing)
+        whole = scales[:, None] * self.gram(change) * scales
         whole.flat[:: len(whole) + 1] += 1.0
         factor = np.linalg.cholesky(whole)
         self._factor = key, factor

@@ -23,7 +23,9 @@ def made(
     k: int = 4,
     steady: int = 0,
 ) -> tuple[Channel, list[np.ndarray]]:
-    """A channel with two bands a session, and its whitened columns (residual last)."""
+    """A channel with two bands a session, and its whitened columns (residual last); of half of the
+    steady ones the deviation is known.
+    """
     white, session, band, places, start = [], [], [], [], 0
     for s in range(sessions):
         for b in range(2):
@@ -45,6 +47,7 @@ def made(
         places=tuple(places),
         whitened=tuple(white),
         steady=steady,
+        known=steady // 2,
     )
     return channel, white
 
@@ -58,6 +61,7 @@ def dense(channel: Channel, scales: Scales) -> np.ndarray:
     for i, one in enumerate(channel.whitened):
         for j, other in enumerate(channel.whitened):
             shared = np.full(channel.columns, np.exp(2 * scales.standing))
+            shared[: channel.known] = 1.0
             if channel.session[i] == channel.session[j]:
                 shared[channel.steady :] += change[channel.session[i]]
             block = (shared[:, None] * one[:-1]).T @ other[:-1]

@@ -19,7 +19,8 @@ def least_squares(channel, white, scales):
     change = channel.change_scales(scales) ** 2
     k, sessions = channel.columns, len(channel.tested)
     precision = np.zeros((k * (1 + sessions),) * 2)
-    precision[:k, :k] = np.eye(k) / np.exp(2 * scales.standing)
+    known = np.arange(k) < channel.known
+    precision[:k, :k] = np.diag(np.where(known, 1.0, np.exp(-2 * scales.standing)))
     right = np.zeros(len(precision))
     for s in range(sessions):
         own = slice(k * (1 + s), k * (2 + s))
@@ -40,7 +41,7 @@ def least_squares(channel, white, scales):
     return np.array(means), np.array(covariances)
 
 
-@pytest.mark.parametrize("steady", [0, 1])
+@pytest.mark.parametrize("steady", [0, 1, 3])
 def test_it_is_that_of_the_normal_equations(steady):
     channel, white = made(np.random.default_rng(8), steady=steady)
     means, covariances = discrepancy_posterior(channel, SCALES)
@@ -69,8 +70,9 @@ def test_samples_that_say_nothing_leave_the_prior(steady):
     means, covariances = discrepancy_posterior(blank, SCALES)
     assert not means.any()
     for s, change in enumerate(channel.change_scales(SCALES)):
-        varies = np.arange(channel.columns) >= steady
-        prior = np.exp(2 * SCALES.standing) + np.where(varies, change**2, 0.0)
+        place = np.arange(channel.columns)
+        prior = np.where(place < channel.known, 1.0, np.exp(2 * SCALES.standing))
+        prior += np.where(place >= steady, change**2, 0.0)
         np.testing.assert_allclose(covariances[s], np.diag(prior), atol=1e-12)
 
 

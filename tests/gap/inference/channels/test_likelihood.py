@@ -25,19 +25,20 @@ def values():
     return np.random.default_rng(1).standard_normal((3, 9))
 
 
-def likelihood(columns, values, tested=TESTED):
+def likelihood(columns, values, tested=TESTED, known=0):
     """Of sessions with one noise."""
-    spectrum = Spectrum(columns @ columns.swapaxes(1, 2) / NOISE, tested)
+    spectrum = Spectrum(columns @ columns.swapaxes(1, 2) / NOISE, tested, known, known)
     cross = columns @ values[:, :, None] / NOISE
     square, spread = float(np.sum(values**2)) / NOISE, values.size * np.log(NOISE)
     return Likelihood(spectrum, cross, square, spread)
 
 
-def expected(columns, values, change, standing):
+def expected(columns, values, change, standing, known=0):
     """Log density of all samples, without 2 pi."""
     stacked = np.concatenate(list(columns), 1)
-    covariance = NOISE * np.eye(values.size) + np.exp(2 * standing) * stacked.T @ stacked
-    for session, own in enumerate(columns):
+    scale = np.where(np.arange(len(stacked)) < known, 1.0, np.exp(standing))[:, None]
+    covariance = NOISE * np.eye(values.size) + (scale * stacked).T @ (scale * stacked)
+    for session, own in enumerate(columns[:, known:]):
         place = slice(session * own.shape[1], (session + 1) * own.shape[1])
         covariance[place, place] += change[session] ** 2 * own.T @ own
     found = multivariate_normal(cov=covariance).logpdf(values.ravel())
@@ -53,6 +54,14 @@ def test_all_scales_give_the_density_of_the_normal_distribution(columns, values)
                 assert made.at(own, standing) == pytest.approx(
                     expected(columns, values, own, standing), rel=1e-9
                 )
+
+
+def test_no_scale_alters_a_deviation_that_is_known(columns, values):
+    made, change = likelihood(columns, values, known=2), np.full(3, 0.5)
+    for standing in (-4.0, 2.0):
+        assert made.at(change, standing) == pytest.approx(
+            expected(columns, values, change, standing, known=2), rel=1e-9
+        )
 
 
 def test_what_is_kept_of_a_change_serves_other_standing_scales(columns, values):
