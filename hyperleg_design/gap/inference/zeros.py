@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference import nuisance_traces
 from hyperleg_design.gap.inference.nuisance import NuisanceParameter
 from hyperleg_design.gap.inference.samples import Samples
@@ -16,6 +17,9 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.filtering import FilteredLog
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.zeroing import zero_spread
+
+OFFSET = next(effect.identifier for effect in EFFECTS.values() if effect.of_zeros)
+"""The effect whose trace a wrong zero leaves."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +68,7 @@ class Zeros:
             own = [i for i, (log, _) in enumerate(places) if log == first + number]
             joints = filtered.signals.subject.joints
             zeros = [
-                NuisanceParameter(
-                    "encoder_offset", joints[places[i][1]], 0, float(self.spread[places[i]])
-                )
+                NuisanceParameter(OFFSET, joints[places[i][1]], 0, float(self.spread[places[i]]))
                 for i in own
             ]
             for row, traces in nuisance_traces.columns(filtered, zeros).items():

@@ -47,6 +47,7 @@ class EncoderOffset(JointEffect):
     """
 
     identifier: ClassVar[str] = "encoder_offset"
+    of_zeros: ClassVar[bool] = True
     nuisance_rank: ClassVar[int] = 4
     summary: ClassVar[str] = "a joint's encoder reads a constant angle too much"
     parameters: ClassVar[tuple[Parameter, ...]] = (
