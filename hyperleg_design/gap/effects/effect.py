@@ -91,7 +91,7 @@ class Effect(ABC):
     """Whether it is a matter of how a joint is built, of its belt, gear or rotor, which is the same
     in all sessions: references do not differ from one another by it."""
     of_zeros: ClassVar[bool] = False
-    """Whether it is what a wrong zero of a joint's encoder leaves; its one parameter is the angle."""
+    """Whether it is what a wrong zero of an encoder leaves; its one parameter is the angle."""
     nuisance_rank: ClassVar[int] = 0
     """Order of its nuisance parameters among those of other effects at the same place; sums over
     them keep it, so that answers are the same to the last digit."""
