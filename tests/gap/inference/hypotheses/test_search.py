@@ -38,7 +38,7 @@ def test_the_best_of_all_sets_of_causes_is_found(search, result):
     }
     best = max(scores, key=scores.__getitem__)
     assert result.best.names == best == tuple(sorted([VISCOUS, DRY]))
-    assert result.best.score == pytest.approx(scores[best], abs=0.5)
+    assert result.best.score > scores[best] - 0.5  # scales are fitted further than here
 
 
 def test_sizes_of_what_is_found_are_those_of_the_robot(result):
