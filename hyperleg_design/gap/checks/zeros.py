@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.model.joint_units import unit_at
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import NOTE, Finding
 from hyperleg_design.gap.signals.zeroing import zero_spread
@@ -22,7 +23,10 @@ def zeroed(log: Log, subject: Subject) -> Iterator[Finding]:
     """
     spread = dict(zip(subject.joints, zero_spread(log, subject).tolist(), strict=True))
     if any(spread.values()):
-        usual = ", ".join(f"{joint} {size:.2g} rad" for joint, size in spread.items())
+        usual = ", ".join(
+            f"{joint} {size:.2g} {unit_at(subject, 'joint', joint, 'rad')}"
+            for joint, size in spread.items()
+        )
         text = (
             "starts at 0 where the joints hang: the encoders seem to be set to zero there, which "
             f"dry friction makes uncertain ({usual})"

@@ -230,7 +230,12 @@ def evidence_of(
         )
     if references:
         sets.append(_set(references, errors, zeros, rules, tested=False))
-    rubbing = replace(rubbing, zero_spread=zeros.usual)
+    usual = {
+        (effect.identifier, place, parameter): float(spread)
+        for effect in WEIGHED.values()
+        for place, spreads in effect.usual_errors(rubbing, tests[0].step).items()
+        for parameter, spread in enumerate(spreads)
+    }
     keys = [(row.residual_name, row.column) for row in sets[0].samples.rows]
     channels = [_channel(key, sets, rules) for key in keys]
     return Evidence(
@@ -239,12 +244,7 @@ def evidence_of(
         sets[0].samples,
         tuple(tests),
         tuple(references),
-        {
-            (effect.identifier, place, parameter): float(spread)
-            for effect in WEIGHED.values()
-            for place, spreads in effect.usual_errors(rubbing, tests[0].step).items()
-            for parameter, spread in enumerate(spreads)
-        },
+        zeros.usual_with(usual),
         tuple(moved for _, moved in channels),
         tuple(
             rules.noise.weight * (len(channel.numbers) - len(channel.bands_tested))

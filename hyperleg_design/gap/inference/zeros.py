@@ -4,7 +4,8 @@ known (`zeroing`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,8 @@ from hyperleg_design.gap.signals.filtering import FilteredLog
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.zeroing import zero_spread
 
+Key = tuple[str, str, int]
+"""Effect, place, and index of the parameter."""
 OFFSET = next(effect.identifier for effect in EFFECTS.values() if effect.of_zeros)
 """The effect whose trace a wrong zero leaves."""
 
@@ -28,6 +31,7 @@ class Zeros:
     tells anything of.
     """
 
+    joints: tuple[str, ...]
     spread: np.ndarray
     """Of tests, then references `(logs, n)` [rad]."""
     tests: int
@@ -43,12 +47,22 @@ class Zeros:
             subject: the robot, with the friction that its logs show.
         """
         logs = (*tests, *references)
-        return cls(np.array([zero_spread(s.log, subject) for s in logs]), len(tests))
+        spread = np.array([zero_spread(signals.log, subject) for signals in logs])
+        return cls(subject.joints, spread, len(tests))
 
-    @property
-    def usual(self) -> np.ndarray:
-        """Spread of the zeros of all logs under test `(n,)` [rad]."""
-        return np.asarray(self.spread[: self.tests].min(0))
+    def usual_with(self, usual: Mapping[Key, float]) -> dict[Key, float]:
+        """Add what zeros of all logs under test are usually off to the usual errors of a robot.
+
+        Args:
+            usual: by effect, place, and index of the parameter, in its unit.
+
+        Returns:
+            The same with the larger ones of encoders.
+        """
+        larger = dict(usual)
+        for joint, spread in zip(self.joints, self.spread[: self.tests].min(0), strict=True):
+            larger[OFFSET, joint, 0] = math.hypot(usual[OFFSET, joint, 0], spread)
+        return larger
 
     def columns(
         self, filtered_logs: Sequence[FilteredLog], samples: Samples, tested: bool
@@ -61,15 +75,16 @@ class Zeros:
             samples: of them.
             tested: whether they are under test.
         """
-        places = [tuple(place) for place in np.argwhere(self.spread > 0).tolist()]
-        columns = np.zeros((len(places), len(samples.value)))
+        logs, joints = np.nonzero(self.spread)
+        columns = np.zeros((len(logs), len(samples.value)))
         first = 0 if tested else self.tests
-        for number, (filtered, where) in enumerate(zip(filtered_logs, samples.where, strict=True)):
-            own = [i for i, (log, _) in enumerate(places) if log == first + number]
-            joints = filtered.signals.subject.joints
+        for log, (filtered, where) in enumerate(
+            zip(filtered_logs, samples.where, strict=True), first
+        ):
+            own = np.flatnonzero(logs == log)
             zeros = [
-                NuisanceParameter(OFFSET, joints[places[i][1]], 0, float(self.spread[places[i]]))
-                for i in own
+                NuisanceParameter(OFFSET, self.joints[j], 0, float(self.spread[log, j]))
+                for j in joints[own]
             ]
             for row, traces in nuisance_traces.columns(filtered, zeros).items():
                 columns[own, where[row]] = traces

@@ -117,9 +117,6 @@ class Subject:
     """The same before anything was declared."""
     voltage: float = float("nan")
     """Of the battery when all is well, where a design or reference logs tell [V]."""
-    zero_spread: np.ndarray | None = None
-    """Spread between logs of the zeros of encoders that are set as a log begins; None where none is
-    `(n,)` [rad]."""
     motor_scale: Mapping[str, np.ndarray] = field(default_factory=dict)
     """By kind of signal, what turns logged values into those of `motors`; see `gearing` `(m,)`
     each."""

@@ -21,6 +21,7 @@ from hyperleg_design.gap.effects.placing import (
     is_commanded,
     limited,
 )
+from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.signals import Signals
@@ -42,6 +43,14 @@ def _limit(inverse: np.ndarray) -> np.ndarray:
     """Limit [Nm], infinite where there is none."""
     with np.errstate(divide="ignore"):
         return np.asarray(1 / np.maximum(inverse, 0.0))
+
+
+@memoized
+def _held(signals: Signals) -> np.ndarray:
+    """Largest torque of each motor that was measured for `HELD` ticks in a row `(m,)` [Nm]."""
+    assert signals.measured is not None
+    torque = np.nan_to_num(np.abs(signals.measured))
+    return np.asarray(sliding_window_view(torque, HELD, 0).min(-1).max(0))
 
 
 class _Lower(MotorHooks):
@@ -111,9 +120,7 @@ class TorqueSaturation(MotorEffect):
         motor = logs[0].subject.motors.index(location)
         for signals in logs:
             if signals.measured is not None:
-                torque = np.nan_to_num(np.abs(signals.measured[:, motor]))
-                most = float(sliding_window_view(torque, HELD).min(1).max())
-                high = np.minimum(high, SENSED / max(most, 1e-9))
+                high = np.minimum(high, SENSED / max(float(_held(signals)[motor]), 1e-9))
         return np.array([low, high])
 
     @override

@@ -15,7 +15,6 @@ from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placed import JointHooks
 from hyperleg_design.gap.model.memoized import memoized
-from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 
 NODES = 5
@@ -63,14 +62,6 @@ class EncoderOffset(JointEffect):
         "several postures": INERTIAL | {"imu_bias", "joint_spring", "torque_constant"}
     }
     look_alikes: ClassVar[Mapping[str, str]] = {"link_com": "several postures"}
-
-    @override
-    def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
-        usual = super().usual_errors(subject, step)
-        if subject.zero_spread is None:
-            return usual
-        of_zeros = dict(zip(subject.joints, subject.zero_spread, strict=True))
-        return {joint: np.hypot(spread, of_zeros[joint]) for joint, spread in usual.items()}
 
     @override
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:

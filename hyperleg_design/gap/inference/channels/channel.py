@@ -9,9 +9,9 @@ session s, over their expected noise, are
 with causes x theta, discrepancy columns C in units of their prior deviations, a standing
 discrepancy w that all sessions share, and its change delta_s in one session, 0 of steady columns,
 for which the diagonal of J is 0, not 1. Of the first `known` steady ones a is 1: no scale alters a
-deviation that is known. A session under test may have a larger change than its
-reference logs (`new`): that is an unlisted effect. Only sums of products of C, y and x are needed,
-so that the cost does not depend on the length of the logs.
+deviation that is known. A session under test may have a larger change than its reference logs
+(`new`): that is an unlisted effect. Only sums of products of C, y and x are needed, so that the
+cost does not depend on the length of the logs.
 """
 
 from __future__ import annotations

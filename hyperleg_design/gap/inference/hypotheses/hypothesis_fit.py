@@ -111,7 +111,6 @@ class HypothesisFit:
             return Candidate(proposal.effect, proposal.location, (traced[proposal.variant],))
         assert not isinstance(traced, NotJudged)
         effect = WEIGHED[proposal.effect]
-        low, high = effect.bounds(proposal.location, self.evidence.signals[0].subject)
         values = np.array(proposal.values, float)
         scales: Sequence[Scales] = current.scales  # what changed must not bend what is lacking
         if not proposal.standing:
@@ -132,7 +131,7 @@ class HypothesisFit:
             if best is None or reached > best[0]:
                 best = reached, cause
                 sizes = self.at_scales(stack, crossing, scales).theta[-len(cause.nulls) :]
-                move = np.clip(cause.nulls + sizes * cause.usual, low, high) - values
+                move = np.clip(cause.nulls + sizes * cause.usual, cause.low, cause.high) - values
             else:
                 move = (best[1].values - values) / 2
             if np.max(np.abs(move) / cause.usual) < self.rules.search.converged:
