@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from operator import is_
@@ -239,16 +239,30 @@ def motor_arrays(design: RobotDesign) -> MotorArrays:
             design.name, "electrical.constants", kind.tolist(), "cannot differ within a batch"
         )
     names_of = [actuator.motor for actuator in design.every_actuator]
-    if all(isinstance(name, str) for name in names_of):
-        unique = list(dict.fromkeys(names_of))
-    else:
-        unique = [str(name) for name in np.unique(np.concatenate([np.ravel(n) for n in names_of]))]
-    named = [find_motor(name) for name in unique]
+    named = motors_by_name(names_of)
     motors, arrays = _KEPT_ARRAYS.get(design, ([], None))
-    if arrays is None or not all(map(is_, motors, named)):
-        arrays = _arrays(design, names_of, dict(zip(unique, named, strict=True)))
-        _KEPT_ARRAYS[design] = (named, arrays)
+    if arrays is None or not all(map(is_, motors, named.values())):
+        arrays = _arrays(design, names_of, named)
+        _KEPT_ARRAYS[design] = (list(named.values()), arrays)
     return arrays
+
+
+def motors_by_name(names: Sequence[Any]) -> dict[str, Motor]:
+    """Look up motors by their names.
+
+    Args:
+        names: of each motor of a robot one name, or an array of names.
+
+    Returns:
+        The motors by name, each once.
+
+    Raises:
+        InputError: one is not in the catalogue.
+    """
+    if all(isinstance(name, str) for name in names):
+        return {name: find_motor(name) for name in dict.fromkeys(names)}
+    unique = np.unique(np.concatenate([np.ravel(name) for name in names]))
+    return {str(name): find_motor(str(name)) for name in unique}
 
 
 def _arrays(design: RobotDesign, names_of: list[Any], motors: Mapping[str, Motor]) -> MotorArrays:
@@ -289,4 +303,5 @@ __all__ = [
     "gather",
     "load_motor",
     "motor_arrays",
+    "motors_by_name",
 ]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import robots
 
@@ -53,12 +55,18 @@ faint one is within what a check of the drives' torques lets pass."""
 
 def run(kind: str, seed: int, **metadata):
     """Log of the coupled rig, as noisy as a cheap robot's."""
+    log = _run(kind, seed)
+    return log.changed(metadata=log.metadata.changed(**metadata))
+
+
+@cache
+def _run(kind: str, seed: int):
     text = robots.COUPLED
     for old, new in CHANGES[kind]:
         assert old in text
         text = text.replace(old, new)
     target = robots.waves(2, [1.5, 1.5], seed=seed)
-    log = robots.servo_run(text, target, 12.0, **metadata)
+    log = robots.servo_run(text, target, 12.0)
     rng = np.random.default_rng([7, seed])
     noise = {"position": 5e-5, "velocity": 5e-3, "motor_torque": 5e-3}
     signals = {

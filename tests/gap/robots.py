@@ -124,7 +124,7 @@ def servo_run(text: str, target, duration: float, rate: float = 200.0, **metadat
 
     Args:
         text: MJCF.
-        target: from time to controls `(nu,)`.
+        target: from times `(t,)` to controls `(t, nu)`.
         duration: [s].
         rate: of the log [Hz].
         **metadata: of the log.
@@ -133,19 +133,17 @@ def servo_run(text: str, target, duration: float, rate: float = 200.0, **metadat
     data = mujoco.MjData(model)
     joints = [model.joint(i).name for i in range(model.njnt)]
     motors = [model.actuator(i).name for i in range(model.nu)]
-    every = round(1 / (rate * model.opt.timestep))
+    every, step = round(1 / (rate * model.opt.timestep)), model.opt.timestep
+    time = np.arange(round(duration / step)) * step
+    asked, held = target(time[::every]), target(time + step / 2)  # held for a step: of its middle
     rows = []
-    for step in range(round(duration / model.opt.timestep)):
-        if step % every == 0:
-            data.ctrl[:] = target(data.time)
-            mujoco.mj_forward(model, data)
-            rows.append(
-                np.concatenate([[data.time], data.qpos, data.qvel, data.ctrl, data.actuator_force])
-            )
-        data.ctrl[:] = target(
-            data.time + model.opt.timestep / 2
-        )  # held for a step, so that of its middle
-        mujoco.mj_step(model, data)
+    for first, now, control in zip(range(0, len(time), every), time[::every], asked, strict=True):
+        data.ctrl[:] = control
+        mujoco.mj_forward(model, data)
+        rows.append(np.concatenate([[now], data.qpos, data.qvel, control, data.actuator_force]))
+        for control in held[first : first + every]:
+            data.ctrl[:] = control
+            mujoco.mj_step(model, data)
     table = np.array(rows)
     n, m = len(joints), len(motors)
     position, velocity, control, force = np.split(table[:, 1:], [n, 2 * n, 2 * n + m], 1)
@@ -182,21 +180,14 @@ def waves(count: int, amplitude, slow: float = 0.2, fast: float = 1.5, seed: int
     rng = np.random.default_rng(seed)
     frequency, phase = rng.uniform(slow, fast, (3, count)), rng.uniform(0, 2 * np.pi, (3, count))
 
-    def at(time: float) -> np.ndarray:
+    def at(time) -> np.ndarray:
+        """Of times of any shape, with the channels as another axis."""
+        time = np.asarray(time)[..., None]
+        angle = 2 * np.pi * frequency * time[..., None] + phase
         ramp = 1 - np.exp(-((time / 0.5) ** 2))
-        return (
-            ramp * np.asarray(amplitude) / 3 * np.sin(2 * np.pi * frequency * time + phase).sum(0)
-        )
+        return ramp * np.asarray(amplitude) / 3 * np.sin(angle).sum(-2)
 
     return at
-
-
-def swift(seed: int):
-    """Targets of one joint that turn round at once and never stand still, from time to `(1,)`."""
-    rng = np.random.default_rng(seed)
-    corners = np.array([-1.0, 1.0] * 20) * rng.uniform(0.2, 0.9, 40)
-    times = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(corners)) / rng.uniform(1.0, 3.5, 39))])
-    return lambda time: np.array([np.interp(time, times, corners)])
 
 
 def quantised(log: Log, size: float) -> Log:

@@ -81,7 +81,7 @@ def gear_change(design: HyperLeg | TreeDesign) -> GearChange:
     Raises:
         InputError: no such law.
     """
-    return _LAWS.of(design)(design)
+    return _LAWS.result(design)
 
 
 @gear_law("declared")

@@ -12,6 +12,7 @@ A leaf holds one value, or, in a batch of designs, an array of them with the bat
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -91,6 +92,9 @@ def checked(value: Any, rule: Rule, where: str, path: str) -> Any:
 
 
 def _checked_number(value: Any, rule: Rule, where: str, path: str) -> Any:
+    plain = type(value) is float and not rule.size and math.isfinite(value)
+    if plain and rule.low <= value <= rule.high:
+        return value
     unit = f" in {rule.unit}" if rule.unit else ""
     what = f"a vector of {rule.size} numbers{unit}" if rule.size else f"a number{unit}"
     if isinstance(value, str):  # YAML reads 1e-3 as text

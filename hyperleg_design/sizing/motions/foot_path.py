@@ -123,6 +123,11 @@ def quintic(time: np.ndarray, begin: float, end: float, first: State, last: Stat
     return np.stack([poly(s), poly.deriv(1)(s) / span, poly.deriv(2)(s) / span**2])
 
 
+_RISE_AND_FALL = 64 * np.polynomial.Polynomial([0, 1, -1]) ** 3
+_BUMP = (_RISE_AND_FALL, _RISE_AND_FALL.deriv(1), _RISE_AND_FALL.deriv(2))
+"""`(4 s (1 - s))^3` with its rate and acceleration."""
+
+
 def bump(time: np.ndarray, begin: float, end: float, height: float) -> np.ndarray:
     """Compute a smooth rise and fall, `height (4 s (1 - s))^3`, at rest at both ends.
 
@@ -135,10 +140,10 @@ def bump(time: np.ndarray, begin: float, end: float, height: float) -> np.ndarra
     Returns:
         The values with their rate and acceleration, `(3, n)`.
     """
-    poly = height * 64 * np.polynomial.Polynomial([0, 1, -1]) ** 3
     span = end - begin
     s = (time - begin) / span
-    return np.stack([poly(s), poly.deriv(1)(s) / span, poly.deriv(2)(s) / span**2])
+    value, rate, bend = (poly(s) for poly in _BUMP)
+    return height * np.stack([value, rate / span, bend / span**2])
 
 
 def rolling(design: Design, row: str, pitch: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -121,15 +122,30 @@ def load_pulse(plan: HopPlan, time: np.ndarray) -> np.ndarray:
         `(3, n)`.
     """
     time = np.asarray(time, float)
+    height, rate, pulse = _pulse(plan.stance, plan.flight)
+    s = np.clip(time / plan.stance, 0.0, 1.0)
+    air = np.maximum(time - plan.stance, 0.0)
+    drop = GRAVITY * plan.flight / 2  # speed of touchdown
+    return np.stack(
+        [
+            plan.stance * height(s) + air * (drop - GRAVITY * air / 2),
+            rate(s) - GRAVITY * air,
+            np.where(air > 0, 0.0, pulse(s)),
+        ]
+    )
+
+
+@cache
+def _pulse(stance: float, flight: float) -> tuple[np.polynomial.Polynomial, ...]:
+    """Height over the duration of stance [m/s], its rate [m/s] and the force over weight [-], of
+    the share of stance that is over.
+    """
     u = 4 * np.polynomial.Polynomial([0.0, 1.0, -1.0])
     shape = u**2 * (3 - 2 * u)
-    pulse = shape * ((plan.stance + plan.flight) / plan.stance / shape.integ()(1.0))
-    s = np.clip(time / plan.stance, 0.0, 1.0)
-    drop = GRAVITY * plan.flight / 2  # speed of touchdown
-    rate = plan.stance * GRAVITY * (pulse.integ() - np.polynomial.Polynomial([0.0, 1.0])) - drop
-    air = np.maximum(time - plan.stance, 0.0)
-    height = plan.stance * rate.integ()(s) + air * (drop - GRAVITY * air / 2)
-    return np.stack([height, rate(s) - GRAVITY * air, np.where(air > 0, 0.0, pulse(s))])
+    pulse = shape * ((stance + flight) / stance / shape.integ()(1.0))
+    drop = GRAVITY * flight / 2
+    rate = stance * GRAVITY * (pulse.integ() - np.polynomial.Polynomial([0.0, 1.0])) - drop
+    return rate.integ(), rate, pulse
 
 
 def _feet(design: Design, plan: HopPlan, time: np.ndarray) -> tuple[FootPath, FootPath]:

@@ -32,17 +32,9 @@ def run(values, phase, **metadata):
     import robots
 
     def target(time):
-        ramp = 1 - np.exp(-((time / 0.5) ** 2))
-        return np.array(
-            [
-                0.5
-                * ramp
-                * (
-                    np.sin(2 * np.pi * 0.4 * time + phase)
-                    + 0.3 * np.sin(2 * np.pi * 2.1 * time + 2 * phase)
-                )
-            ]
-        )
+        ramp, angle = 1 - np.exp(-((time / 0.5) ** 2)), 2 * np.pi * time
+        both = np.sin(0.4 * angle + phase) + 0.3 * np.sin(2.1 * angle + 2 * phase)
+        return (0.5 * ramp * both)[:, None]
 
     return robots.servo_run(
         SERVO.format(**values), target, 5.0, gains={"swing": (6.0, 0.15)}, **metadata
