@@ -4,6 +4,8 @@ code under test.
 
 from __future__ import annotations
 
+from functools import cache
+
 import mujoco
 import numpy as np
 
@@ -319,24 +321,7 @@ def geared_run(side, names, *, weak=1.0, load=0.0, constant=None, seed=0, **meta
     """A log of `GEARED`, torques and speeds of the motors as of one side of their gears; a weak
     hip, a load on the shank [kg].
     """
-    model = mujoco.MjModel.from_xml_string(GEARED)
-    shank = model.body("shank").id
-    model.body_mass[shank] += load  # at its centre of mass
-    data, rng = mujoco.MjData(model), np.random.default_rng(seed)
-    phase, rows = rng.uniform(0, 6, (3, 2)), []
-    for step in range(10000):
-        time = step * 0.001
-        waves = np.sin(2 * np.pi * np.array([[0.17], [0.6], [1.3]]) * time + phase) * np.array(
-            [[0.5], [0.3], [0.1]]
-        )
-        target = waves.sum(0) * min(time, 1.0)
-        if step % 5 == 0:
-            asked = GAINS[:, 0] * (target - data.qpos) - GAINS[:, 1] * data.qvel
-            rows.append(np.r_[time, target, data.qpos, data.qvel, asked])
-        data.ctrl[:] = asked / GEARS * np.array([weak, 1.0])
-        mujoco.mj_step(model, data)
-    table = np.array(rows)
-    table[:, 3:5] += 2e-5 * rng.normal(size=(len(table), 2))
+    table, noise = _geared_motion(weak, load, seed)
     gear = GEARS if side == "motor" else np.ones(2)
     signals = {}
     for i, joint in enumerate(("hip", "knee")):
@@ -350,7 +335,7 @@ def geared_run(side, names, *, weak=1.0, load=0.0, constant=None, seed=0, **meta
             f"motor_torque_command/{names[i]}": torque,
             f"motor_velocity/{names[i]}": table[:, 5 + i] * gear[i],
         }
-        told = torque + 5e-3 * rng.normal(size=len(torque))
+        told = torque + 5e-3 * noise[i]
         signals |= (
             {f"motor_torque/{names[i]}": told}
             if constant is None
@@ -364,3 +349,26 @@ def geared_run(side, names, *, weak=1.0, load=0.0, constant=None, seed=0, **meta
         signals,
         Metadata(gains=gains, torque_constant=constants, **metadata),
     )
+
+
+@cache
+def _geared_motion(weak: float, load: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Time, targets, positions, velocities and torques of the joints of `GEARED`, and white noise
+    of both torques.
+    """
+    model = mujoco.MjModel.from_xml_string(GEARED)
+    model.body_mass[model.body("shank").id] += load  # at its centre of mass
+    data, rng = mujoco.MjData(model), np.random.default_rng(seed)
+    phase, rows = rng.uniform(0, 6, (3, 2)), []
+    times = np.arange(10000) * 0.001
+    swing = np.sin(2 * np.pi * np.array([[0.17], [0.6], [1.3]]) * times[:, None, None] + phase)
+    targets = (swing * [[0.5], [0.3], [0.1]]).sum(1) * np.minimum(times, 1.0)[:, None]
+    for first in range(0, len(times), 5):
+        target = targets[first]
+        asked = GAINS[:, 0] * (target - data.qpos) - GAINS[:, 1] * data.qvel
+        rows.append(np.r_[times[first], target, data.qpos, data.qvel, asked])
+        data.ctrl[:] = asked / GEARS * [weak, 1.0]
+        mujoco.mj_step(model, data, nstep=5)
+    table = np.array(rows)
+    table[:, 3:5] += 2e-5 * rng.normal(size=(len(table), 2))
+    return table, rng.normal(size=(2, len(table)))
