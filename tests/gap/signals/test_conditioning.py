@@ -170,7 +170,9 @@ def test_targets_that_are_kept_from_row_to_row_act_half_a_tick_late(robot_files,
         return smooth(time) + 0.8 * (time % 2 > 1)[:, None]
 
     for way, size in ((smooth, 0.03), (jumping, 0.15)):
-        log = robots.servo_run(ONE_SERVO, lambda t, w=way: w(np.floor(t / step + 1e-9) * step), 12, 50)
+        log = robots.servo_run(
+            ONE_SERVO, lambda t, w=way: w(np.floor(t / step + 1e-9) * step), 12, 50
+        )
         blind = robots.without(log, "motor_torque")
         left = {}
         for targets in ("", "kept", "moving"):
