@@ -115,6 +115,7 @@ def test_speeds_that_controllers_know_late_show_where_their_damping_asks_for_tor
     )  # without current loops all damping is the motors' own
 
 
+@pytest.mark.slow
 def test_a_load_is_weighed_by_targets_and_gains_alone(geared):
     logs = [targets_alone(seed, load=0.5, session="today") for seed in (1, 2)]
     healthy = [targets_alone(seed, session="before") for seed in (3, 4)]

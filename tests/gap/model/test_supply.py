@@ -1,3 +1,6 @@
+import math
+from functools import cache
+
 import numpy as np
 import pytest
 import robots
@@ -34,28 +37,24 @@ def voltage(time):
     return 6.8 + 1.1 * np.sin(3.1 * time) - 0.05 * time
 
 
+@cache
 def run(gain=GAIN, declared=STIFFNESS, reading=CONSTANT, duration=10.0, seed=0):
     """A pendulum on a motor whose duty cycle is gain times error, clipped to one: current (duty V -
     kt speed) / R.
     """
     rng = np.random.default_rng(seed)
     phases = rng.uniform(0, 6, 3)
-    q, v, rows = 0.0, 0.0, []
-    for tick in range(round(duration / STEP)):
-        time = tick * STEP
-        target = (
-            0.8 * np.sin(1.7 * time + phases[0])
-            + 0.3 * np.sin(4.1 * time + phases[1])
-            + 0.25 * np.sign(np.sin(0.9 * time + phases[2]))
-        )
-        current = (np.clip(gain * (target - q), -1, 1) * voltage(time) - CONSTANT * v) / RESISTANCE
+    times = np.arange(round(duration / STEP)) * STEP
+    targets = 0.8 * np.sin(1.7 * times + phases[0]) + 0.3 * np.sin(4.1 * times + phases[1])
+    targets += 0.25 * np.sign(np.sin(0.9 * times + phases[2]))
+    q, v, rows, heavy = 0.0, 0.0, [], INERTIA + MASS * LENGTH**2
+    each = zip(times.tolist(), targets.tolist(), voltage(times).tolist(), strict=True)
+    for tick, (time, target, volts) in enumerate(each):
+        duty = min(max(gain * (target - q), -1.0), 1.0)
+        current = (duty * volts - CONSTANT * v) / RESISTANCE
         if tick % EVERY == 0:
-            rows.append((time, target, q, v, current, voltage(time)))
-        v += (
-            STEP
-            * (CONSTANT * current - MASS * 9.81 * LENGTH * np.sin(q))
-            / (INERTIA + MASS * LENGTH**2)
-        )
+            rows.append((time, target, q, v, current, volts))
+        v += STEP * (CONSTANT * current - MASS * 9.81 * LENGTH * math.sin(q)) / heavy
         q += STEP * v
     time, target, q, v, current, volts = np.array(rows).T
     signals = {

@@ -27,7 +27,7 @@ def test_what_the_references_show_as_well_is_no_change_but_what_the_model_lacks(
     assert torque["low"] < 0.8 < torque["high"]
 
 
-@pytest.mark.parametrize("references", [(), (2, 3)])
+@pytest.mark.parametrize("references", [(), pytest.param((2, 3), marks=pytest.mark.slow)])
 def test_a_torque_that_no_effect_has_is_unknown(robot_files, references):
     result = diagnosed.diagnosis(robot_files, "cubic_faint", references=references)
     assert result.verdict == "unknown"
@@ -61,7 +61,7 @@ def test_a_log_told_twice_in_one_session_gives_no_other_cause(robot_files, visco
     assert twice.causes[0].location == viscous.causes[0].location
 
 
-@pytest.mark.parametrize("kind", ["healthy", "viscous"])
+@pytest.mark.parametrize("kind", [pytest.param("healthy", marks=pytest.mark.slow), "viscous"])
 def test_a_reference_that_differs_from_the_others_is_told_and_gives_no_cause(robot_files, kind):
     logs = [diagnosed.run(kind, s, session="today") for s in (0, 1)]
     kinds = {2: "healthy", 3: "dry", 4: "healthy"}

@@ -3,6 +3,7 @@ and torques come from MuJoCo's inverse dynamics of a motion that formulas give.
 """
 
 import re
+from functools import cache
 
 import mujoco
 import numpy as np
@@ -37,6 +38,7 @@ NOISE = {
 STEP = 0.005
 
 
+@cache
 def flown(seed, gyro=(0, 0, 0), felt=(0, 0, 0), leans=(0, 0, 0), turned=(0, 0, 0)):
     """A log of 8 s of an IMU that is off by constants, told a vertical that leans, or turned."""
     rng = np.random.default_rng(seed)
@@ -95,7 +97,7 @@ def test_a_good_sensor_has_no_error(flyer):
 @pytest.mark.parametrize(
     ("gyro", "felt"), [((0.02, -0.03, 0), (0, 0, 0)), ((0, 0, 0), (0.3, 0, -0.4))]
 )
-@pytest.mark.parametrize("references", [0, 1])
+@pytest.mark.parametrize("references", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_a_constant_error_is_named_with_its_size(flyer, gyro, felt, references):
     found = told(flyer, flown(5, gyro, felt), *[flown(1)] * references)
     assert [(c.effect, c.location) for c in found.causes] == [("imu_bias", "imu")]

@@ -101,6 +101,7 @@ def test_friction_that_is_all_of_the_torque_is_friction(model, healthy):
         assert sizes(found.causes, effect) == pytest.approx(own, rel=0.06)
 
 
+@pytest.mark.slow
 def test_its_change_is_found_beside_what_the_model_lacks(model, healthy):
     raised = [recorded(seed, COULOMB * [1.0, RAISED]) for seed in (1, 2)]
     found = diagnose(model, raised, healthy)

@@ -45,6 +45,7 @@ def test_an_idle_log_goes_by_the_names(robot):
     assert not load_subject(robot, [Log("still", still.time, named, still.metadata)]).motor_scale
 
 
+@pytest.mark.slow
 def test_a_weak_geared_motor_is_named_with_its_size(robot):
     logs = [robots.geared_run("motor", ("a", "b"), weak=0.75, seed=seed) for seed in (1, 2)]
     found = diagnose(robot, logs, [robots.geared_run("motor", ("a", "b"), seed=3)], threads=1)

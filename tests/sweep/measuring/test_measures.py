@@ -55,7 +55,9 @@ LEAVES = sorted(
 )
 
 
-@pytest.mark.parametrize("variant", ["toe", "toe_removed"])
+@pytest.mark.parametrize(
+    "variant", ["toe", pytest.param("toe_removed", marks=pytest.mark.slow)]
+)
 def test_a_batch_in_any_one_leaf_equals_its_designs(variant):
     """Whichever leaf it is, the others staying single numbers."""
     made = 0

@@ -63,6 +63,7 @@ def test_the_files_hold_the_held_out_designs(conditioned, tmp_path):
         write_held_out(robots[::-1], tmp_path)
 
 
+@pytest.mark.slow
 def test_every_held_out_design_gets_a_specialist_of_its_own(conditioned, tmp_path):
     policy, designs = conditioned
     robots = held_out_designs([policy], designs).robots

@@ -6,6 +6,7 @@ from hyperleg_design.validation.baselines.pace import fit_pace
 from hyperleg_design.validation.baselines.population import position_gap
 
 
+@pytest.mark.slow
 def test_pace_gets_better_and_stays_within_bounds(rig):
     pytest.importorskip("cma", reason="needs cma: the extra baselines")
     short = [condition(log.part(slice(0, 300)), rig.signals[0].subject) for log in rig.logs[:1]]

@@ -4,6 +4,7 @@ from hyperleg_design.validation.baselines.own import fit_own
 from hyperleg_design.validation.baselines.sysid import fit_sysid
 
 
+@pytest.mark.slow
 def test_sysid_finds_it_too_with_a_simulation_a_parameter(rig):
     pytest.importorskip(
         "mujoco.sysid._src.optimize", reason="needs mujoco[sysid]: the extra baselines"
