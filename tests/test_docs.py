@@ -48,7 +48,14 @@ def test_printed_lines_are_compared_with_little_tolerance():
     assert not appears("  cause friction at shoulder: torque 0.248 Nm (0.23 .. 0.26)", output)
 
 
-@pytest.mark.parametrize("page", TUTORIALS, ids=lambda page: page.stem)
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, marks=[pytest.mark.slow] * (page.stem == "train_and_evaluate"))
+        for page in TUTORIALS
+    ],
+    ids=lambda page: page.stem,
+)
 def test_a_tutorial_runs_as_it_stands(page, tmp_path, monkeypatch, capsys):
     """Files are written, commands and Python run in order, and every line of output appears."""
     monkeypatch.chdir(tmp_path)

@@ -65,8 +65,8 @@ def test_operating_points_are_projected_and_coloured_by_power(design):
 @pytest.mark.parametrize("variant", ["toe", "toe_locked", "toe_removed_matched", "toe_removed"])
 def test_every_variant_can_be_drawn_and_saved(variant, tmp_path):
     robot = load_design("hyperleg", variant=variant)
+    figure = figures.torque_speed_figure(robot)
     for ending in ("png", "svg"):
-        figure = figures.torque_speed_figure(robot)
         assert save(figure, tmp_path / f"speed.{ending}", dpi=40).stat().st_size > 4000
 
 

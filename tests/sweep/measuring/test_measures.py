@@ -55,9 +55,7 @@ LEAVES = sorted(
 )
 
 
-@pytest.mark.parametrize(
-    "variant", ["toe", pytest.param("toe_removed", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("variant", ["toe", pytest.param("toe_removed", marks=pytest.mark.slow)])
 def test_a_batch_in_any_one_leaf_equals_its_designs(variant):
     """Whichever leaf it is, the others staying single numbers."""
     made = 0

@@ -90,6 +90,7 @@ def policy(tmp_path_factory):
     return folder / "policy.onnx"
 
 
+@pytest.mark.slow
 def test_a_stopped_training_goes_on_and_gives_a_specialist(policy, tmp_path):
     tuning = FineTuning(
         policy, load_design("toe", overrides={"toe.mass": 0.31}), 192, tmp_path / "7"
