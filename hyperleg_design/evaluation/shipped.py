@@ -3,11 +3,11 @@
 
 | file | holds |
 |---|---|
-| `policy.onnx` | the last policy, weights in half precision (0.15 MB with three layers of 256,
-128, 64) | | `critic.onnx` | its critic, for trainings that go on from it (older
-ones have none) | | `late_*.onnx` | late policies before it, earliest first | | `run.json`
-| what was trained: task, design, preset (all resolved), seed, command, versions, commit | |
-`progress.jsonl` | the learning curve, at most `CURVE_ROWS` rows |
+| `policy.onnx` | the last policy, weights in half precision (0.15 MB with 256, 128, 64 units) |
+| `critic.onnx` | its critic, for trainings that go on from it (older ones have none) |
+| `late_*.onnx` | late policies before it, earliest first |
+| `run.json` | task, design, preset (all resolved), seed, command, versions, commit |
+| `progress.jsonl` | the learning curve, at most `CURVE_ROWS` rows |
 
 A folder of finished trainings (`results/campaign`) has the same form and more files; `pack` keeps
 the five above and halves the precision of weights.

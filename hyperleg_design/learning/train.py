@@ -4,12 +4,13 @@ A training lives in a folder:
 
 | file | holds |
 |---|---|
-| `run.json` | what is trained: task, design, preset (all resolved), seed, command, versions, commit
-| | `checkpoint.pt` | all that its future depends on; written whole or not at all | | `status.json`
-| how far it is, with the latest measures | | `progress.jsonl` | measures of every iteration, and
-trials | | `late_*.onnx`, `policy.onnx` | late policies, and the last one; `policy.onnx` is there
-when the training is done | | `critic.onnx` | the last critic: what a training that starts from the
-policy goes on with | | `events.*` | the same for TensorBoard |
+| `run.json` | task, design, preset (all resolved), seed, command, versions, commit |
+| `checkpoint.pt` | all that its future depends on; written whole or not at all |
+| `status.json` | how far it is, with the latest measures |
+| `progress.jsonl` | measures of every iteration, and trials |
+| `late_*.onnx`, `policy.onnx` | late policies, and the last one, when the training is done |
+| `critic.onnx` | the last critic, for a training that starts from the policy |
+| `events.*` | the measures for TensorBoard |
 """
 
 from __future__ import annotations

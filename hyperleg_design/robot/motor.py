@@ -3,6 +3,7 @@
 Power constant: Joule heat over squared torque, `Cp = f R / Kt^2` with R line to line and f by the
 current that Kt divides by: 1 for direct current through two phases, 3/4 for the amplitude of a
 sinusoidal phase current, 3/2 for its rms.
+
 Stall torque: the DC-motor line `tau = tau_stall (1 - omega / omega_0)`, with `tau_stall = omega_0 /
 Cp`, because `V = R i + Ke omega` and `Ke = Kt` give `R V / (R Ke) = omega_0 Kt^2 / R`.
 """

@@ -10,9 +10,9 @@ information of all blocks together is the Gram matrix
 
 and Fs of several motions add up. Everything else follows from F alone: the standard deviation of a
 parameter while the effect's others are fitted; how many of its own standard deviations an effect of
-usual size stands out; how many are left of it after a
-rival has explained what it can,  d^2 = F_aa - F_ab F_bb^-1 F_ba ; and the smallest principal angle between two blocks.
-"""  # noqa: E501
+usual size stands out; how many are left of it after a rival has explained what it can,
+d^2 = F_aa - F_ab F_bb^-1 F_ba; and the smallest principal angle between two blocks.
+"""
 
 from __future__ import annotations
 

@@ -2,11 +2,9 @@
 of each value.
 
 A leaf stands in a file as a plain value, or as a mapping `{value, label, source}` where the label
-says how far to trust
-it: `paper` (printed there), `vendor` (a data sheet), `derived` (follows from those), `assumed` (an
-    engineer's choice).
-A leaf holds one value, or, in a batch of designs, an array of them with the batch in front: `(n,)`,
-`(n, 3)`.
+says how far to trust it: `paper` (printed there), `vendor` (a data sheet), `derived` (follows from
+those), `assumed` (an engineer's choice). A leaf holds one value, or, in a batch of designs, an
+array of them with the batch in front: `(n,)`, `(n, 3)`.
 """
 
 from __future__ import annotations

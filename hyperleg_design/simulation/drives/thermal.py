@@ -6,8 +6,8 @@ The paper prints `h = h_th - EMA(tau / tau_cont)^2`, which leaves open what is s
     square_of_ema:  h = h_th - e^2,  e a moving average of tau / tau_cont, sign and all, as printed
 
 and penalises `[-(dh/dt + h / T)]+`, with T the time constant of the average. With the same T the
-first reading forgets
-itself: `de/dt = (x - e) / T` gives `-(dh/dt + h / T) = (x - h_th) / T`, the present overload alone.
+first reading forgets itself: `de/dt = (x - e) / T` gives `-(dh/dt + h / T) = (x - h_th) / T`, the
+present overload alone.
 """
 
 from __future__ import annotations

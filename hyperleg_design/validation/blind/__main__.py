@@ -1,5 +1,6 @@
-"""The process that makes a trial: `python -m
-hyperleg_design.validation.blind --cases N --seed S --out DIR`; prints the key's SHA-256.
+"""The process that makes a trial; prints the key's SHA-256.
+
+Usage: `python -m hyperleg_design.validation.blind --cases N --seed S --out DIR`.
 """
 
 from __future__ import annotations

@@ -5,8 +5,10 @@ goes on where it was stopped.
 |---|---|
 | `seal.json` | SHA-256 of the key, written before any case can be seen |
 | `key.zip` | the truth; nothing but the scoring opens it |
-| `cases/000/` | `case.json`, `robot.xml` where the robot is no design, `logs/*.parquet`,
-`references/*.parquet` | | `diagnoses/000/` | `diagnosis.json`, `seconds.json` |
+| `cases/000/case.json` | what the diagnosis is given |
+| `cases/000/robot.xml` | the robot, where it is no design |
+| `cases/000/logs/`, `references/` | Parquet files |
+| `diagnoses/000/` | `diagnosis.json`, `seconds.json` |
 """
 
 from __future__ import annotations
