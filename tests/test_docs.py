@@ -51,7 +51,7 @@ def test_printed_lines_are_compared_with_little_tolerance():
 @pytest.mark.parametrize(
     "page",
     [
-        pytest.param(page, marks=[pytest.mark.slow] * (page.stem == "train_and_evaluate"))
+        pytest.param(page, marks=pytest.mark.slow if page.stem == "train_and_evaluate" else ())
         for page in TUTORIALS
     ],
     ids=lambda page: page.stem,

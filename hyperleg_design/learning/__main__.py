@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.errors import HyperlegError
 from hyperleg_design.learning import launch
-from hyperleg_design.robot.load import load_robot
-from hyperleg_design.simulation.tasks import load_task
 
 if TYPE_CHECKING:
     from hyperleg_design.simulation.alteration import Alterations
@@ -56,11 +54,9 @@ def main(
     given = parser.parse_args(arguments)
     if arguments is None and not launch.surrounded():
         launch.run_here(sys.argv[1:], given.threads)
-    try:
-        load_task(given.task)  # before torch is imported, which takes seconds
-        load_robot(given.design)
-        from hyperleg_design.learning.train import train
+    from hyperleg_design.learning.train import train
 
+    try:
         done = train(
             given.task,
             given.design,

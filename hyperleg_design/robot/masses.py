@@ -91,7 +91,7 @@ def mass_table(design: HyperLeg) -> MassTable:
     Raises:
         InputError: no such law.
     """
-    return _LAWS.result(design)
+    return _LAWS.of(design)(design)
 
 
 def built_mass(design: Any, actuator: Any) -> Any:

@@ -84,6 +84,9 @@ class Motor:
     presets: Mapping[str, Mapping[str, Constant]] = field(default_factory=dict)
     """Named other sets of no-load speed, peak torque and power constant."""
 
+    def __hash__(self) -> int:
+        return hash(self.name)
+
     def _value(self, name: str) -> float:
         return self.constants[name].value
 

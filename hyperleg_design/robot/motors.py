@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from operator import is_
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
+from hyperleg_design.memoized import memoized
 from hyperleg_design.robot.motor import Constant, Motor, load_motor
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, MOTORS
 from hyperleg_design.robot.parameters import values as parameters
@@ -212,10 +211,6 @@ def gather(names: Any, value: Any) -> np.ndarray:
     )
 
 
-_KEPT_ARRAYS: WeakKeyDictionary[RobotDesign, tuple[list[Motor], MotorArrays]] = WeakKeyDictionary()
-"""What `motor_arrays` returned for designs that are still in use, and the motors it is of."""
-
-
 def motor_arrays(design: RobotDesign) -> MotorArrays:
     """Collect the constants of the motors of one limb.
 
@@ -238,13 +233,8 @@ def motor_arrays(design: RobotDesign) -> MotorArrays:
         raise InputError(
             design.name, "electrical.constants", kind.tolist(), "cannot differ within a batch"
         )
-    names_of = [actuator.motor for actuator in design.every_actuator]
-    named = motors_by_name(names_of)
-    motors, arrays = _KEPT_ARRAYS.get(design, ([], None))
-    if arrays is None or not all(map(is_, motors, named.values())):
-        arrays = _arrays(design, names_of, named)
-        _KEPT_ARRAYS[design] = (list(named.values()), arrays)
-    return arrays
+    named = motors_by_name([actuator.motor for actuator in design.every_actuator])
+    return _arrays(design, tuple(named.items()))
 
 
 def motors_by_name(names: Sequence[Any]) -> dict[str, Motor]:
@@ -265,14 +255,16 @@ def motors_by_name(names: Sequence[Any]) -> dict[str, Motor]:
     return {str(name): find_motor(str(name)) for name in unique}
 
 
-def _arrays(design: RobotDesign, names_of: list[Any], motors: Mapping[str, Motor]) -> MotorArrays:
-    """Constants of the motors by name, for the names `(...)` of each motor of one limb."""
+@memoized
+def _arrays(design: RobotDesign, motors: tuple[tuple[str, Motor], ...]) -> MotorArrays:
+    """Constants of the motors of one limb, whose names mean these motors."""
+    names_of = [actuator.motor for actuator in design.every_actuator]
     batch, kind = design.batch_shape, design.electrical_section.constants
     ratio = np.asarray(design.electrical_section.voltage_ratio, float)
     voltage = np.broadcast_to(ratio, batch)[..., None]
 
     def stacked(value: Any) -> np.ndarray:
-        numbers = {name: value(motor) for name, motor in motors.items()}
+        numbers = {name: value(motor) for name, motor in motors}
         columns = [
             np.broadcast_to([numbers[str(name)] for name in np.ravel(names)], batch or (1,))
             for names in names_of

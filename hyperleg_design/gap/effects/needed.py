@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 
 from hyperleg_design.gap.model import pads, rigid
-from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.memoized import memoized
 
 
 def needed(

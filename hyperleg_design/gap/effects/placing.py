@@ -22,9 +22,9 @@ from itertools import compress
 import numpy as np
 
 from hyperleg_design.gap.model.machine import machine_of
-from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.memoized import memoized
 from hyperleg_design.simulation.drives import limits
 
 SIDES = ("encoders at the joints", "encoders at the rotors")

@@ -8,8 +8,8 @@ import numpy as np
 
 from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.model.base import BaseMotion
-from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.memoized import memoized
 
 PLACEHOLDER = 100.0
 """Limit of torque over what a joint needs from which, at all joints of a robot, it limits nothing

@@ -24,8 +24,8 @@ from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.strength import motor_strength
 from hyperleg_design.gap.inference import noise_model
 from hyperleg_design.gap.inference.samples import Samples
-from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.memoized import memoized
 
 LEAST = 0.05
 """Share of noise that no cause shrinks further, as a standard deviation [-]."""

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.gap.model.mechanism import BASE, Mechanism
-from hyperleg_design.gap.model.memoized import memoized
+from hyperleg_design.memoized import memoized
 
 SPIN, ANGULAR, LINEAR, PRODUCTS = slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 15)
 """Rows of a frame's motion: angular velocity, angular acceleration, acceleration of the origin

@@ -27,10 +27,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hyperleg_design.gap.model import pads
-from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.contact import TOUCHING_FORCE
 from hyperleg_design.gap.signals.nominal_ground import Law, nominal_ground
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.memoized import memoized
 
 SLIDING = 0.05
 """Speed from which a foot may slide [m/s] (assumed: above what noise of encoders makes)."""

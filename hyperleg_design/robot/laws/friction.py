@@ -57,7 +57,7 @@ def joint_friction(design: RobotDesign) -> tuple[np.ndarray, np.ndarray]:
         InputError: no such law.
     """
     design = cast("HyperLeg | TreeDesign", design)
-    coulomb, viscous = _LAWS.result(design)
+    coulomb, viscous = _LAWS.of(design)(design)
     if not isinstance(design, TreeDesign) and design.toe.joint == "passive":
         place = np.arange(len(JOINTS)) == JOINTS.index("toe")
         viscous = viscous + np.expand_dims(design.toe.damping, -1) * place

@@ -30,6 +30,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from hyperleg_design.memoized import memoized
 from hyperleg_design.robot import motors, transmission
 from hyperleg_design.robot.laws.laws import Laws
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, JOINTS
@@ -81,7 +82,16 @@ def gear_change(design: HyperLeg | TreeDesign) -> GearChange:
     Raises:
         InputError: no such law.
     """
-    return _LAWS.result(design)
+    names = [*actuator_parts(design, "motor"), *reference_parts(design, "motor")]
+    return _changed(design, _LAWS.of(design), tuple(motors.motors_by_name(names).values()))
+
+
+@memoized
+def _changed(
+    design: HyperLeg | TreeDesign, law: Law, _motors: tuple[motors.Motor, ...]
+) -> GearChange:
+    """What a law gives for a design, once for as long as its names mean the same motors."""
+    return law(design)
 
 
 @gear_law("declared")

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from operator import is_
 from typing import Any, Generic, TypeVar
-from weakref import WeakKeyDictionary
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.robot.motors import motors_by_name
 
 Law = TypeVar("Law", bound=Callable[..., Any])
 
@@ -23,7 +20,6 @@ class Laws(Generic[Law]):
     def __init__(self, section: str) -> None:
         self.section = section
         self.by_name: dict[str, Law] = {}
-        self._results: WeakKeyDictionary[Any, tuple[tuple[Any, ...], Any]] = WeakKeyDictionary()
 
     def register(self, name: str) -> Callable[[Law], Law]:
         """Add a law under the name by which designs choose it.
@@ -59,26 +55,3 @@ class Laws(Generic[Law]):
             where = design.source or design.name
             raise InputError(where, f"{self.section}.law", name, f"expects one of {known}")
         return self.by_name[name]
-
-    def result(self, design: Any) -> Any:
-        """Compute what the law that a design names gives for it.
-
-        It is computed once for each design, as long as its names mean the same law and motors.
-
-        Args:
-            design: a robot or batch.
-
-        Returns:
-            The result of the law, not to be written into.
-
-        Raises:
-            InputError: no such law, or a motor is not in the catalogue.
-        """
-        law = self.of(design)
-        names = [*(actuator.motor for actuator in design.every_actuator), *design.reference_motors]
-        of = (law, *motors_by_name(names).values())
-        known, result = self._results.get(design, ((), None))
-        if len(known) != len(of) or not all(map(is_, known, of)):
-            result = law(design)
-            self._results[design] = (of, result)
-        return result

@@ -70,11 +70,6 @@ class RobotDesign:
         return tuple(self.actuator_sections.values())
 
     @property
-    def reference_motors(self) -> tuple[Any, ...]:
-        """Motors of the build that masses, friction and gears are declared for."""
-        raise NotImplementedError
-
-    @property
     def electrical_section(self) -> Any:
         """Section on the battery and the drivers."""
         return getattr(self, "electrical")  # noqa: B009

@@ -95,13 +95,6 @@ class HyperLeg(RobotDesign):
         return tuple(getattr(self.actuators, name) for name in ACTUATOR_OF_MOTOR)
 
     @property
-    def reference_motors(self) -> tuple[Any, ...]:
-        """Motors of the paper's build."""
-        return tuple(
-            getattr(self.reference, f"{part}_motor") for part in ("hip", "knee", "ankle", "toe")
-        )
-
-    @property
     def actuator_sections(self) -> dict[str, Any]:
         """Motors that are there, by name: all seven, or without the toe's."""
         names = MOTORS if self.actuators.toe_installed else MOTORS[:-1]

@@ -91,7 +91,7 @@ def checked(value: Any, rule: Rule, where: str, path: str) -> Any:
 
 def _checked_number(value: Any, rule: Rule, where: str, path: str) -> Any:
     plain = type(value) is float and not rule.size and math.isfinite(value)
-    if plain and rule.low <= value <= rule.high:
+    if plain and rule.low <= value <= rule.high:  # as nearly all are, without an array
         return value
     unit = f" in {rule.unit}" if rule.unit else ""
     what = f"a vector of {rule.size} numbers{unit}" if rule.size else f"a number{unit}"

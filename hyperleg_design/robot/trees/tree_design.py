@@ -116,11 +116,6 @@ class TreeDesign(RobotDesign):
         return self._named("reference")
 
     @property
-    def reference_motors(self) -> tuple[Any, ...]:
-        """Motors for which the masses are declared."""
-        return tuple(section.motor for section in self.reference_sections.values())
-
-    @property
     def rod_sections(self) -> dict[str, Rod]:
         """Posture-dependent linkages by name of the motor."""
         return self._named("rods")

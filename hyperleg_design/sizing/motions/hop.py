@@ -61,6 +61,11 @@ class HopPlan:
         check_positive("hop", stance=self.stance, flight=self.flight, min_knee=self.min_knee)
 
     @property
+    def touchdown_speed(self) -> float:
+        """Speed at which the centre of mass comes down [m/s]."""
+        return GRAVITY * self.flight / 2
+
+    @property
     def rise(self) -> float:
         """Rise of the centre of mass in flight [m]."""
         return GRAVITY * self.flight**2 / 8
@@ -122,13 +127,12 @@ def load_pulse(plan: HopPlan, time: np.ndarray) -> np.ndarray:
         `(3, n)`.
     """
     time = np.asarray(time, float)
-    height, rate, pulse = _pulse(plan.stance, plan.flight)
+    height, rate, pulse = _pulse(plan)
     s = np.clip(time / plan.stance, 0.0, 1.0)
     air = np.maximum(time - plan.stance, 0.0)
-    drop = GRAVITY * plan.flight / 2  # speed of touchdown
     return np.stack(
         [
-            plan.stance * height(s) + air * (drop - GRAVITY * air / 2),
+            plan.stance * height(s) + air * (plan.touchdown_speed - GRAVITY * air / 2),
             rate(s) - GRAVITY * air,
             np.where(air > 0, 0.0, pulse(s)),
         ]
@@ -136,15 +140,15 @@ def load_pulse(plan: HopPlan, time: np.ndarray) -> np.ndarray:
 
 
 @cache
-def _pulse(stance: float, flight: float) -> tuple[np.polynomial.Polynomial, ...]:
+def _pulse(plan: HopPlan) -> tuple[np.polynomial.Polynomial, ...]:
     """Height over the duration of stance [m/s], its rate [m/s] and the force over weight [-], of
     the share of stance that is over.
     """
     u = 4 * np.polynomial.Polynomial([0.0, 1.0, -1.0])
     shape = u**2 * (3 - 2 * u)
-    pulse = shape * ((stance + flight) / stance / shape.integ()(1.0))
-    drop = GRAVITY * flight / 2
-    rate = stance * GRAVITY * (pulse.integ() - np.polynomial.Polynomial([0.0, 1.0])) - drop
+    pulse = shape * ((plan.stance + plan.flight) / plan.stance / shape.integ()(1.0))
+    fallen = plan.stance * GRAVITY * (pulse.integ() - np.polynomial.Polynomial([0.0, 1.0]))
+    rate = fallen - plan.touchdown_speed
     return rate.integ(), rate, pulse
 
 

@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+import os
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import masses
 from hyperleg_design.robot.design import Design, load_design
@@ -161,3 +164,43 @@ def test_another_law_is_one_function(design: Design, monkeypatch: pytest.MonkeyP
     assert masses.mass_table(changed).thigh == pytest.approx(5.71 - 0.1)
     with pytest.raises(InputError, match=r"gears\.law"):
         design.with_values({"gears.law": "no such"}, "test")
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """Designs for which the law of gears was called."""
+    designs, law = [], gear._LAWS.by_name["catalogue"]
+
+    def counted(design):
+        designs.append(design)
+        return law(design)
+
+    monkeypatch.setitem(gear._LAWS.by_name, "catalogue", counted)
+    return designs
+
+
+def test_a_change_is_computed_once_for_each_design(calls, monkeypatch):
+    robot, same = load_design("hyperleg"), load_design("hyperleg")
+    first = gear.gear_change(robot)
+    assert gear.gear_change(robot) is first
+    assert gear.gear_change(same) is not first
+    assert (calls.count(robot), calls.count(same)) == (1, 1)
+    monkeypatch.setitem(gear._LAWS.by_name, "catalogue", lambda _: "another law")
+    assert gear.gear_change(robot) == "another law"
+
+
+@pytest.mark.parametrize("leaf", ["actuators.knee.motor", "reference.knee_motor"])
+def test_a_motor_whose_file_has_changed_gives_another_change(calls, tmp_path, leaf):
+    text = (resources.content_folder("motors") / "RI60.yaml").read_text().replace("RI60", "Mine")
+    file = tmp_path / "Mine.yaml"
+    file.write_text(text)
+    robot = load_design("hyperleg", overrides={leaf: str(file)})
+    first = gear.gear_change(robot)
+    assert gear.gear_change(robot) is first
+    assert calls.count(robot) == 1
+    file.write_text(text.replace("description: ", "description: another "))
+    os.utime(file, ns=(0, file.stat().st_mtime_ns + 1))
+    second = gear.gear_change(robot)
+    assert second is not first
+    assert gear.gear_change(robot) is second
+    assert calls.count(robot) == 2

@@ -21,10 +21,10 @@ from hyperleg_design.gap.effects.placing import (
     is_commanded,
     limited,
 )
-from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.memoized import memoized
 from hyperleg_design.simulation.alteration import Tick
 from hyperleg_design.simulation.drives.limits import Limits
 

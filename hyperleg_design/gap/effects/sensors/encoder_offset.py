@@ -14,8 +14,8 @@ from hyperleg_design.gap.effects.kinds import JointEffect
 from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placed import JointHooks
-from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.memoized import memoized
 
 NODES = 5
 """Positions at which the torque is computed: it is a trigonometric polynomial of second degree in

@@ -45,10 +45,10 @@ from hyperleg_design.gap.effects.series import (
 )
 from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.machine import rotor
-from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.transmission import turned
+from hyperleg_design.memoized import memoized
 
 BAND = 0.2
 """Highest frequency of the transmitted torque that stretches a belt, over the rate of the log [-]:

@@ -8,9 +8,9 @@ from hyperleg_design.gap.effects.series import band_limited
 from hyperleg_design.gap.effects.transmissions.belt import BAND, CHOSEN, frictionless, load
 from hyperleg_design.gap.model import rigid
 from hyperleg_design.gap.model.machine import rotor
-from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import dry_friction
+from hyperleg_design.memoized import memoized
 
 RESTITUTION = 0.3
 """Speed after over speed before a rotor hits the end of its dead zone; assumed: gears and cords

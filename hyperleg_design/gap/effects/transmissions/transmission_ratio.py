@@ -22,10 +22,10 @@ from hyperleg_design.gap.effects.needed import as_logged, needed
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placing import SIDES, at_motor, given, motor_velocity
 from hyperleg_design.gap.model import friction
-from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.transmission import turned
+from hyperleg_design.memoized import memoized
 from hyperleg_design.simulation.alteration import Alteration, Live
 from hyperleg_design.simulation.drives.machine import Machine
 

@@ -11,8 +11,8 @@ from typing_extensions import override
 from hyperleg_design.gap.effects.needed import needed
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.unlisted.flexible import Flexible, parameters
-from hyperleg_design.gap.model.memoized import memoized
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.memoized import memoized
 
 ORDERS = (1, 2, 3, 4)
 """Periods of the error in one turn [-] (assumed: eccentric discs, and scales that are read from

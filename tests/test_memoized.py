@@ -6,7 +6,7 @@ import gc
 import weakref
 from concurrent.futures import ThreadPoolExecutor
 
-from hyperleg_design.gap.model.memoized import MOST, memoized
+from hyperleg_design.memoized import MOST, memoized
 
 
 class Owner:
