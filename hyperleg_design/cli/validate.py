@@ -47,8 +47,8 @@ class Validate(Printing):
 
         cases = chosen_cases(self.suites, self.splits, self.only)
         if self.list_cases:
-            for case in cases:
-                print(f"{case.name} ({case.split}): {case.about}")
+            named = [{"name": c.name, "split": c.split, "about": c.about} for c in cases]
+            self.tell(named, "\n".join(f"{c.name} ({c.split}): {c.about}" for c in cases))
             return
         if self.data is not None and not self.data.is_dir():
             raise InputError("validate", "--data", str(self.data), "no such folder")

@@ -212,14 +212,15 @@ def evaluate_many(
                 progress(evaluations[-1])
         return evaluations
     with nullcontext(pool) if pool else evaluation_pool(min(workers, count)) as processes:
+        futures = [processes.submit(_evaluated, job) for job in jobs]
         try:
-            for evaluation in processes.map(_evaluated, jobs):
-                evaluations.append(evaluation)
+            for future in futures:
+                evaluations.append(future.result())
                 if progress is not None:
-                    progress(evaluation)
-        except BaseException:
-            processes.shutdown(cancel_futures=True)
-            raise
+                    progress(evaluations[-1])
+        finally:
+            for future in futures:
+                future.cancel()
     return evaluations
 
 

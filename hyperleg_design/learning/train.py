@@ -18,6 +18,7 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import json
+import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -98,16 +99,14 @@ def train(
         InputError: bad input, or `out` holds another training or is at work already.
         OutputError: something cannot be written; the training can go on from its last checkpoint.
     """
-    command = (
-        f"hyperleg train --task {_name(task)} --design {_name(design)} --seed {seed} "
-        f"--preset {_name(preset)}"
-    )
-    command += "".join(f" --set-file {overlay}" for overlay in overlays)
-    command += "".join(f" --set {override}" for override in overrides)
+    words = ["hyperleg", "train", "--task", _name(task), "--design", _name(design)]
+    words += ["--seed", str(seed), "--preset", _name(preset)]
+    words += [word for file in overlays for word in ("--set-file", str(file))]
+    words += [word for override in overrides for word in ("--set", override)]
     if start is not None:
-        command += f" --start {Path(str(start)).parent.name}/{Path(str(start)).name}"
+        words += ["--start", f"{Path(str(start)).parent.name}/{Path(str(start)).name}"]
     if designs is not None:
-        command += f" --designs {'designs' if isinstance(designs, DesignSpread) else designs}"
+        words += ["--designs", "designs" if isinstance(designs, DesignSpread) else str(designs)]
     spread = load_design_spread(designs) if isinstance(designs, str | Path) else designs
     task = task if isinstance(task, Task) else load_task(task)
     task = task.conditioned(spread.ranges) if spread else task
@@ -128,7 +127,7 @@ def train(
         "start": started and started.source,
         "overlay": overlay and dict(overlay),
         "designs": spread and spread.to_mapping(),
-        "command": command,
+        "command": shlex.join(words),
     }
     description = {**describe(task, design, seed, preset), **origin}
     _check_same(folder, description)

@@ -13,9 +13,8 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections import deque
 from collections.abc import Iterator
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +23,7 @@ from typing import Any
 from hyperleg_design import provenance
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.sweep import table
+from hyperleg_design.sweep.jobs import completed
 from hyperleg_design.sweep.measuring.evaluate import Columns, evaluate_range
 from hyperleg_design.sweep.space import load_sweep
 from hyperleg_design.sweep.spaces.definition import Sweep
@@ -228,23 +228,7 @@ def _evaluate(
 def _columns(
     sweep: Sweep, missing: list[tuple[int, int]], executor: Executor | None
 ) -> Iterator[tuple[tuple[int, int], Columns]]:
-    if executor is None:
-        samples = sweep.samples()
-        for start, stop in missing:
-            yield (start, stop), evaluate_range(sweep, start, stop, samples)
-        return
-    # a few chunks ahead, so that results do not pile up in memory
-    waiting: deque[tuple[tuple[int, int], Future[Columns]]] = deque()
-    rest = iter(missing)
-    ahead = 2 * getattr(executor, "_max_workers", 8)
-    try:
-        while True:
-            while len(waiting) < ahead and (place := next(rest, None)) is not None:
-                waiting.append((place, executor.submit(evaluate_range, sweep, *place)))
-            if not waiting:
-                return
-            place, future = waiting.popleft()
-            yield place, future.result()
-    finally:
-        for _, future in waiting:
-            future.cancel()
+    # in this process, samples are drawn once; they are not sent to others
+    samples = (sweep.samples(),) if executor is None else ()
+    jobs = (((start, stop), (sweep, start, stop, *samples)) for start, stop in missing)
+    yield from completed(evaluate_range, jobs, executor)

@@ -23,7 +23,7 @@ def disagreements(logs: Sequence[Log]) -> dict[str, list[Finding]]:
     of signals.
 
     Args:
-        logs: of one robot; two or more of the same role, or nothing is compared.
+        logs: of one robot; fewer than two are not compared.
 
     Returns:
         Findings by name of a log; logs that agree with the majority are absent. Of two that

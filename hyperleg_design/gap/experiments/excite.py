@@ -145,7 +145,7 @@ def shortest_set(
 
     wanted = clearness(names) >= CLEAR
     chosen: list[str] = []
-    while True:
+    while len(chosen) < len(names):
         now = clearness(chosen) if chosen else np.zeros(len(wanted))
         if (now[wanted] >= CLEAR).all():
             break

@@ -38,7 +38,12 @@ BAND = 25.0
 STEP = 0.1
 """Step of finite differences over the scale of a parameter [-]."""
 RANK = 1e-9
-"""Least eigenvalue over the largest of a block that counts."""
+"""Least eigenvalue of a block that counts, over its largest [-]; derived: below it, rounding."""
+SMALLEST = 1e-12
+"""The same, where a block holds next to nothing at all [squared standard deviations]; assumed."""
+REST = 1e-7
+"""Least share of the square of a column that other columns leave [-]; derived: below it, rounding.
+"""
 Place = tuple[str, str]
 """Effect and location."""
 
@@ -218,7 +223,7 @@ def standard_deviations(
     for at, name in enumerate(blocks.parameters[blocks.places.index(place)]):
         others = np.arange(len(span)) != at
         left = _left(part, at, np.flatnonzero(others))
-        deviations[name] = float(scale[at] / np.sqrt(left)) if left > RANK else float("inf")
+        deviations[name] = float(scale[at] / np.sqrt(left)) if left > 0 else float("inf")
     return deviations
 
 
@@ -277,7 +282,7 @@ def principal_angle(gram: np.ndarray, blocks: Blocks, place: Place, rival: Place
 def _basis(gram: np.ndarray, span: np.ndarray) -> np.ndarray:
     """Columns that make a block orthonormal `(k, rank)`."""
     values, axes = np.linalg.eigh(gram[np.ix_(span, span)])
-    good = values > max(RANK * values[-1], 1e-12)
+    good = values > max(RANK * values[-1], SMALLEST)
     return np.asarray(axes[:, good] / np.sqrt(values[good]))
 
 
@@ -289,7 +294,7 @@ def _left(gram: np.ndarray, column: int, span: np.ndarray) -> float:
     basis = _basis(gram, span)
     explained = basis.T @ gram[span, column]
     left = whole - float(explained @ explained)
-    return left if left > 1e-7 * whole else 0.0
+    return left if left > REST * whole else 0.0
 
 
 def summed(grams: Mapping[str, np.ndarray], names: Iterable[str]) -> np.ndarray:

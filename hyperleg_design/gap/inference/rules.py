@@ -194,7 +194,7 @@ class InferenceRules:
     posterior: PosteriorRules = field(default_factory=PosteriorRules)
 
     def __post_init__(self) -> None:
-        """Check that every number is finite.
+        """Check that numbers are finite and not negative, and prior probabilities below 1.
 
         Raises:
             InputError: a number that is not.
@@ -203,6 +203,10 @@ class InferenceRules:
             values = getattr(self, section.name)
             for rule in dataclasses.fields(values):
                 value = getattr(values, rule.name)
-                if not math.isfinite(value):
+                below = 1.0 if rule.name.endswith("probability") else math.inf
+                if not 0 <= value < below:
                     place = f"{section.name}.{rule.name}"
-                    raise InputError("inference rules", place, value, "expects a finite number")
+                    remedy = f"expects a number from 0 to below {below:g}"
+                    if below == math.inf:
+                        remedy = "expects a finite number, 0 or more"
+                    raise InputError("inference rules", place, value, remedy)

@@ -184,7 +184,7 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
 
     Args:
         path: of the file, or of the folder that holds it.
-        robot: name to write down.
+        robot: name to write down; that of the diagnosis by default.
 
     Returns:
         The overlay.
@@ -224,7 +224,9 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
     gap = content.get("gap")
     closed = gap.get("closed") if isinstance(gap, dict) else None
     source = {"diagnosis": str(path), "verdict": verdict, "closed": closed}
-    return Overlay(robot or str(content.get("robot", "")), change, source)
+    made_by = content.get("provenance")
+    named = made_by.get("robot", "") if isinstance(made_by, dict) else ""
+    return Overlay(robot or str(named), change, source)
 
 
 def _only(content: Mapping[str, Any], known: tuple[str, ...], where: str, place: str) -> None:

@@ -3,7 +3,7 @@ import dataclasses
 import pytest
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.inference.rules import InferenceRules, NoiseRules
+from hyperleg_design.gap.inference.rules import CauseRules, InferenceRules, NoiseRules
 
 
 def test_every_rule_is_documented_with_its_unit():
@@ -24,9 +24,15 @@ def test_every_rule_is_documented_with_its_unit():
                 assert "[-]" in text or "[nat]" in text, line.target.id
 
 
-def test_a_rule_that_is_no_number_is_refused():
-    with pytest.raises(InputError, match="information"):
-        InferenceRules(noise=NoiseRules(information=float("nan")))
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -0.1])
+def test_a_rule_that_is_no_number_is_refused(value):
+    with pytest.raises(InputError, match=r"noise\.information.*expects a finite number, 0 or more"):
+        InferenceRules(noise=NoiseRules(information=value))
+
+
+def test_what_is_certain_beforehand_is_no_prior_probability():
+    with pytest.raises(InputError, match=r"cause\.probability = 1\.0: expects .* below 1"):
+        InferenceRules(cause=CauseRules(probability=1.0))
 
 
 def test_rules_change_one_at_a_time():

@@ -172,6 +172,10 @@ def test_a_diagnosis_becomes_an_overlay(tmp_path):
     assert found.change == {("coulomb_friction", "left_knee"): {"torque": 1.9}}
     assert overlay_of_diagnosis(tmp_path, "hyperleg").change == found.change
     assert found.source == {"diagnosis": str(path), "verdict": "explained", "closed": 0.93}
+    assert overlay_of_diagnosis(path).robot == ""
+    path.write_text(json.dumps(content | {"provenance": {"robot": "arm"}}))
+    assert overlay_of_diagnosis(path).robot == "arm"
+    assert overlay_of_diagnosis(path, "hyperleg").robot == "hyperleg"
     for broken, message in (
         ({**content, "causes": [], "verdict": "none"}, "nothing to add: the verdict is none"),
         ({**content, "causes": [{"effect": "payload"}]}, r"causes.0"),

@@ -77,9 +77,7 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
     if "observation.state" not in features:
         where = f"{path.name}/meta/info.json"
         raise InputError(where, "features", sorted(features)[:6], "expects observation.state")
-    motor_names = [
-        name.removesuffix(".pos") for name in _names(features["observation.state"], path.name)
-    ]
+    motor_names = _names(features["observation.state"])
     joints = joint_names(user_metadata, motor_names, path.name)
     table, rows_read, rows = _table(path, [f for f in SIGNALS if f in features])
     scale, remarks = _scale(info, user_metadata, motor_names, table, path.name)
@@ -89,17 +87,24 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
     lacking = lacks({signal for feature, signal in SIGNALS.items() if feature in features})
     gains = [] if user_metadata.get("gains") else ["gains"]
     remarks.append(f"the source lacks {', '.join([*lacking, *gains])}")
+    place = {
+        feature: _columns(
+            feature, _names(features[feature]), table[feature], motor_names, path.name
+        )
+        for feature in SIGNALS
+        if feature in table
+    }
     logs = []
     for episode in np.unique(table["episode_index"]):
         in_episode = table["episode_index"] == episode
         if in_episode.sum() < 2:
             continue
         signals: dict[str, np.ndarray] = {}
-        for feature, signal in SIGNALS.items():
-            if feature in table:
-                factors = scale if signal != "joint_torque" else np.ones(len(joints))
-                values = table[feature][in_episode][:, : len(joints)]
-                signals |= columns_of({signal: values * factors}, joints)
+        for feature, columns in place.items():
+            signal, logged = SIGNALS[feature], [joints[joint] for joint in columns]
+            factors = scale[list(columns)] if signal != "joint_torque" else 1.0
+            values = table[feature][in_episode][:, list(columns.values())]
+            signals |= columns_of({signal: values * factors}, logged)
         name = f"{path.name}_{int(episode):06d}"
         about: tuple[str, ...] = ("robot_type", "fps", "codebase_version")
         extra = {key: info[key] for key in about if key in info} | {"episode": int(episode)}
@@ -118,14 +123,34 @@ def _info(path: Path) -> dict[str, Any]:
     return info
 
 
-def _names(feature: Mapping[str, Any], where: str) -> list[str]:
+def _names(feature: Mapping[str, Any]) -> list[str]:
+    """Names of a feature's columns, numbers where it has none."""
     names = feature.get("names")
     if isinstance(names, dict):  # {"motors": [...]}
         names = next((v for v in names.values() if isinstance(v, list)), None)
     size = int((feature.get("shape") or [len(names or [])])[0])
     if names is None or len(names) != size:
         return [f"joint_{i}" for i in range(size)]
-    return [str(name) for name in names]
+    return [str(name).removesuffix(".pos") for name in names]
+
+
+def _columns(
+    feature: str, names: list[str], values: np.ndarray, joints: list[str], where: str
+) -> dict[int, int]:
+    """Column of a feature by place of the joint: by its name, or by its place where the feature
+    names no joint.
+
+    Raises:
+        InputError: no names tell which column is which joint's, and the number of columns differs.
+    """
+    width = values.shape[1] if values.ndim == 2 else 1
+    by_name = {place: names.index(joint) for place, joint in enumerate(joints) if joint in names}
+    if by_name and len(names) == width:
+        return by_name
+    if width != len(joints):
+        remedy = f"expects a column for each of {len(joints)} joints, or names of its columns"
+        raise InputError(f"{where}/meta/info.json", f"features.{feature}", width, remedy)
+    return {place: place for place in range(width)}
 
 
 def _table(path: Path, features: list[str]) -> tuple[dict[str, np.ndarray], int, int]:

@@ -42,16 +42,47 @@ IMU_COLUMNS = (
 )
 
 
+@dataclass(frozen=True)
+class _Source:
+    """What publishes a stream: an arm and its gripper may share a topic, each with a clock of its
+    own.
+    """
+
+    topic: str
+    kind: str
+    """Type of its messages."""
+    joints: frozenset[str]
+    """Joints that each of its messages holds."""
+
+    def __str__(self) -> str:
+        if self.kind != JOINT_STATE:
+            return self.topic
+        return f"{self.topic} of {', '.join(sorted(self.joints))}"
+
+
 @dataclass
 class _Stream:
+    """Messages of one source."""
+
     time: list[float] = field(default_factory=list)
-    columns: tuple[str, ...] = ()
-    rows: list[np.ndarray] = field(default_factory=list)
+    columns: dict[str, int] = field(default_factory=dict)
+    """Place of each column that any message has, in order of appearance."""
+    rows: list[tuple[list[int], np.ndarray]] = field(default_factory=list)
+    """Of each message, the places of its columns and their values."""
+
+    def add(self, time: float, columns: tuple[str, ...], row: np.ndarray) -> None:
+        """Append a message, which may have other columns than those before."""
+        places = [self.columns.setdefault(column, len(self.columns)) for column in columns]
+        self.time.append(time)
+        self.rows.append((places, row))
 
     def arrays(self) -> tuple[np.ndarray, dict[str, np.ndarray], int]:
-        values = np.stack(self.rows)
+        """Sorted times, columns with NaN where a message lacks them, and messages out of order."""
+        values = np.full((len(self.rows), len(self.columns)), np.nan)
+        for message, (places, row) in enumerate(self.rows):
+            values[message, places] = row
         return sorted_stream(
-            np.array(self.time), {column: values[:, i] for i, column in enumerate(self.columns)}
+            np.array(self.time), {column: values[:, i] for column, i in self.columns.items()}
         )
 
 
@@ -83,32 +114,32 @@ def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
     user_metadata = beside(path, metadata)
     streams, remarks = _streams(_parts(path) if path.is_dir() else [path], path.name)
     states = {
-        topic: s
-        for (topic, kind), s in streams.items()
-        if kind == JOINT_STATE and not _commands(topic)
+        source: stream
+        for source, stream in streams.items()
+        if source.kind == JOINT_STATE and not _commands(source.topic)
     }
     if not states:
-        there = sorted({topic for topic, _ in streams})
+        there = sorted({source.topic for source in streams})
         remedy = f"holds no joint states: expects {JOINT_STATE} with positions"
         raise InputError(path.name, "topics", there, remedy)
-    main = max(states, key=lambda topic: len(states[topic].time))
+    main = max(states, key=lambda source: len(states[source].time))
     time, signals, disorder = states[main].arrays()
     if disorder:
         remarks.append(
-            f"{disorder} messages of {main} came out of order and were sorted by their stamps"
+            f"{disorder} messages of {main.topic} came out of order and were sorted by their stamps"
         )
-    for (topic, kind), stream in streams.items():
-        if topic == main or not stream.rows:
+    for source, stream in streams.items():
+        if source == main:
             continue
         own, values, _ = stream.arrays()
-        is_target = kind == JOINT_STATE and _commands(topic)
+        is_target = source.kind == JOINT_STATE and _commands(source.topic)
         if is_target:
             positions = {c: v for c, v in values.items() if c.startswith("position/")}
             values = {c.replace("position", "position_target", 1): v for c, v in positions.items()}
         new = {column: v for column, v in values.items() if column not in signals}
         signals |= onto(time, own, new, hold=is_target)
         remarks.append(
-            f"{topic} has a clock of its own: "
+            f"{source} has a clock of its own: "
             f"{'each target holds until the next' if is_target else 'interpolated'}"
         )
     if not any(c.startswith("position_target/") for c in signals):
@@ -116,7 +147,14 @@ def read_bag(path: Path, metadata: Mapping[str, Any] | None = None) -> list[Log]
     if not user_metadata.get("gains"):
         remarks.append("the source lacks the controller's gains; say `gains` in a side file")
     name = path.name if path.is_dir() else path.stem
-    source_metadata = {"base": "floating"} if any(c.startswith("gyro/") for c in signals) else {}
+    source_metadata = {}
+    if any(c.startswith("gyro/") for c in signals):
+        source_metadata["base"] = "floating"
+        if not user_metadata.get("base"):
+            remarks.append(
+                'an IMU is logged, so the base is taken as floating; if it is fixed, say `"base": '
+                '"fixed"` in a side file'
+            )
     return [build_log(path, name, time, signals, source_metadata, user_metadata, remarks)]
 
 
@@ -128,8 +166,8 @@ def _commands(topic: str) -> bool:
     return any(word in topic.lower() for word in COMMANDS)
 
 
-def _streams(parts: list[Path], where: str) -> tuple[dict[tuple[str, str], _Stream], list[str]]:
-    streams: dict[tuple[str, str], _Stream] = {}
+def _streams(parts: list[Path], where: str) -> tuple[dict[_Source, _Stream], list[str]]:
+    streams: dict[_Source, _Stream] = {}
     remarks: list[str] = []
     held = 0
     decode = _decoder(where)
@@ -139,14 +177,10 @@ def _streams(parts: list[Path], where: str) -> tuple[dict[tuple[str, str], _Stre
                 raise InputError(
                     where, message.topic, message.encoding, "is no known encoding: expects cdr"
                 )
-            stream = streams.setdefault((message.topic, message.type), _Stream())
             stamp, columns, row = _decoded(decode(message))
-            if not stream.columns:
-                stream.columns = columns
-            elif stream.columns != columns:
-                row = _reordered(stream.columns, columns, row)
-            stream.time.append(stamp if stamp > 0 else message.time)
-            stream.rows.append(row)
+            joints = frozenset(column.partition("/")[2] for column in columns)
+            stream = streams.setdefault(_Source(message.topic, message.type, joints), _Stream())
+            stream.add(stamp if stamp > 0 else message.time, columns, row)
             held += len(row)
             if held > blocks.MAX_VALUES:
                 return streams, [
@@ -154,11 +188,6 @@ def _streams(parts: list[Path], where: str) -> tuple[dict[tuple[str, str], _Stre
                     "too long to be held in memory: only its beginning was read",
                 ]
     return {k: s for k, s in streams.items() if len(s.rows) > 1 and s.columns}, remarks
-
-
-def _reordered(wanted: tuple[str, ...], columns: tuple[str, ...], row: np.ndarray) -> np.ndarray:
-    have = dict(zip(columns, row, strict=True))
-    return np.array([have.get(column, np.nan) for column in wanted])
 
 
 def _decoder(where: str) -> Callable[[mcap.Message], Any]:

@@ -100,3 +100,36 @@ def test_damage(tmp_path):
     (folder / "meta" / "info.json").write_text("{")
     with pytest.raises(InputError, match="is not JSON"):
         open_log(folder)
+
+
+def test_targets_are_told_apart_by_their_names(tmp_path):
+    folder = write(tmp_path / "set", version="v3.0")
+    info = json.loads((folder / "meta" / "info.json").read_text())
+    (file,) = (folder / "data").rglob("*.parquet")
+    table = pyarrow.parquet.read_table(file)
+
+    def with_action(names, columns):
+        state = np.stack(table["observation.state"].to_pylist())
+        action = {"dtype": "float32", "shape": [len(columns)], "names": names}
+        about = info | {"features": info["features"] | {"action": action}}
+        (folder / "meta" / "info.json").write_text(json.dumps(about))
+        at = table.column_names.index("action")
+        values = [list(row) for row in (state + 1)[:, columns]]
+        pyarrow.parquet.write_table(table.set_column(at, "action", [values]), file)
+        return open_log(folder)[0]
+
+    apart = np.radians(1)
+    for names, columns, logged in (
+        (NAMES[::-1], [1, 0], ("shoulder_pan", "gripper")),
+        (["speed", *NAMES], [0, 0, 1], ("shoulder_pan", "gripper")),
+        (NAMES[:1], [0], ("shoulder_pan",)),
+        (None, [0, 1], ("shoulder_pan", "gripper")),
+        (["other_a", "other_b"], [0, 1], ("shoulder_pan", "gripper")),
+    ):
+        log = with_action(names, columns)
+        targets = {column for column in log.signals if column.startswith("position_target/")}
+        assert targets == {f"position_target/{joint}" for joint in logged}
+        moved = log.column("position_target/shoulder_pan") - log.column("position/shoulder_pan")
+        np.testing.assert_allclose(moved, apart, atol=1e-5)
+    with pytest.raises(InputError, match=r"features.action = 1: expects a column for each of 2"):
+        with_action(None, [0])

@@ -215,6 +215,32 @@ def test_joints_in_another_order_and_messages_out_of_order(tmp_path):
     assert any("out of order" in remark for remark in log.metadata.remarks)
 
 
+def test_two_publishers_on_one_topic(tmp_path):
+    def both():
+        for i in range(100):
+            t = 5 + i * 0.01
+            yield "/joint_states", JOINT_STATE, t, state(t, ["hip", "knee"], [t, -t])
+            if i % 2:
+                t += 0.004
+                yield "/joint_states", JOINT_STATE, t, state(t, ["gripper"], [2 * t])
+
+    (log,) = open_log(mcap_file(tmp_path / "run.mcap", both()))
+    t = 5 + np.arange(100) * 0.01
+    np.testing.assert_allclose(log.signals["position/knee"], -t)
+    np.testing.assert_allclose(log.signals["position/gripper"][2:-1], 2 * t[2:-1])
+    assert any("/joint_states of gripper has a clock" in r for r in log.metadata.remarks)
+
+
+def test_columns_that_begin_later(tmp_path):
+    def late():
+        for i in range(20):
+            t = 5 + i * 0.01
+            yield "/joints", JOINT_STATE, t, state(t, ["hip"], *([t], [1.0])[: 1 + (i >= 10)])
+
+    (log,) = open_log(mcap_file(tmp_path / "run.mcap", late()))
+    np.testing.assert_array_equal(np.isnan(log.signals["velocity/hip"]), np.arange(20) < 10)
+
+
 @pytest.mark.parametrize("order", "<>")
 def test_messages_of_either_byte_order(tmp_path, order):
     messages = [
