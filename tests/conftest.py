@@ -24,6 +24,17 @@ settings.register_profile(
 settings.load_profile("suite")
 
 
+FIRST = "test_study.py"
+"""Tests that share one study, the costliest of what tests share."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Run these first: processes that take over each other's tests then cannot part them, and the
+    study is made once.
+    """
+    items.sort(key=lambda item: item.path.name != FIRST)
+
+
 @pytest.fixture(scope="session")
 def hyperleg() -> Design:
     """The paper's robot."""

@@ -17,7 +17,7 @@ def unusable(log: Log, subject: Subject | None = None) -> list[Finding]:
 
     Args:
         log: what was read.
-        subject: the robot; without it, torques are compared with `LARGEST_TORQUE` only.
+        subject: the robot; without it, torques are compared with `UnitRules.largest_torque` only.
 
     Returns:
         Errors and warnings; empty for a log that is fit.

@@ -60,11 +60,13 @@ def _magnitudes(log: Log) -> Iterator[Finding]:
         span = float(np.nanmax(values) - np.nanmin(values))
         if kind in ("position", "position_target") and span > RULES.unit.largest_angle:
             text = f"spans {span:.3g} rad, two turns or more"
-            remedy = "if it is in degrees, convert to rad; a joint that turns on and on is well"
+            remedy = (
+                "convert to rad if it is in degrees; ignore this for a joint that turns without end"
+            )
             yield Finding(WARNING, column, text, remedy)
         limit, unit = LARGEST.get(kind, (math.inf, ""))
         if middle > limit or (kind == "gyro" and largest > 2 * limit):
-            text = f"reaches {largest:.4g}, no such thing in this unit"
+            text = f"reaches {largest:.4g}, more than any robot does: the unit seems to be another"
             yield Finding(ERROR, column, text, f"looks like {unit}")
     if all(log.has("accelerometer", axis) for axis in "xyz"):
         # axes that are told in turn are each known all along

@@ -240,7 +240,7 @@ class Effect(ABC):
         return self.bounds(location, subject)
 
     def fixed(self, values: np.ndarray) -> np.ndarray:
-        """Which parameters stay as a search begins with them: nothing is between their choices.
+        """Find the parameters with discrete values, which a fit does not move.
 
         Args:
             values: of the parameters `(parameters,)`.

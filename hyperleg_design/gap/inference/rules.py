@@ -131,7 +131,7 @@ class SearchRules:
     steps: int = 5
     """Gauss-Newton steps of a start [-]."""
     least: float = 0.0
-    """Gain in nats from which any is [nat] (assumed)."""
+    """Least predicted gain of a cause that is fitted [nat] (assumed)."""
     groups: int = 2
     """Effects that are tried at all of their places at once in one step [-]."""
     pairs: int = 2

@@ -35,7 +35,7 @@ def white_density(residual: np.ndarray, mask: np.ndarray, cutoff: float, step: f
     known = np.flatnonzero(mask)
     if len(known) < 64:
         return 0.0
-    # second differences take out what is slow, so that none of it leaks
+    # third differences take out what is slow, so that none of it leaks
     third = np.diff(np.interp(np.arange(known[0], known[-1] + 1), known, residual[known]), 3)
     power = np.abs(np.fft.rfft(third * np.hanning(len(third)))) ** 2
     frequency = np.fft.rfftfreq(len(third), step)

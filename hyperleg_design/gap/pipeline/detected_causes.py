@@ -26,10 +26,10 @@ ground explains it [-]."""
 
 
 def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot], certain: float) -> Diagnosis:
-    """Add what feet show of their ground to a diagnosis: beside what is named already, or instead
-    of nothing.
+    """Add slippery or soft ground, which feet show, to the causes of a diagnosis.
 
-    An unknown gap is explained by the feet where it lies under them, else they are a part of it.
+    Where no cause is named, the ground is the answer if at least `OF_FEET` of the gap lies under
+    these feet, and the first rival otherwise.
 
     Args:
         diagnosis: the diagnosis so far.

@@ -179,8 +179,8 @@ def _beside(
     effects: Sequence[str] | None,
     rules: InferenceRules,
 ) -> Diagnosis:
-    """With what feet tell that is in no residual, where other logs, or the other half of one,
-    foretell the main part of it.
+    """Add slippery or soft ground to a diagnosis, where it explains at least `main_part` of the
+    error on logs, or halves of one, from which it was not estimated.
     """
     least, certain = rules.posterior.main_part, rules.posterior.most_certain
     for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):

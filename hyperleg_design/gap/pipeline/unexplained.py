@@ -84,10 +84,10 @@ class Unexplained:
             shapes.append(residual_shape(CYCLES, joint, text, 0.0))
         for joint, heard in self.ringing.items():
             text = (
-                f"is {heard.times:.0f} times as large above the frequencies of its motion as in "
-                f"the references, most at {heard.frequency:.0f} Hz, and faults are lost in it: "
-                f"play that knocks, a belt that gives, a loose part, or a control loop on the edge "
-                f"of stability"
+                f"has a torque residual {heard.times:.0f} times as large above the frequencies of "
+                f"its motion as in the references, most at {heard.frequency:.0f} Hz, in which "
+                f"small faults cannot be seen: look for play, a belt that gives, a loose part, or "
+                f"a control loop on the edge of stability"
             )
             shapes.append(residual_shape(RINGS, joint, text, 0.0))
         remainder = self.posterior.remainder

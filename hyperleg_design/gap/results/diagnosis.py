@@ -18,7 +18,7 @@ VERDICTS = ("explained", "ambiguous", "none", "unknown")
 NAMING = ("explained", "ambiguous")
 """Verdicts by which causes are named."""
 MOST_RIVALS = 8
-"""Listed."""
+"""Number of rivals that a diagnosis lists at most."""
 LEAST_SHARE = 0.02
 """Share of the excess below which a place is not listed [-]."""
 SCHEMA_FILE = Path(__file__).with_name("diagnosis_schema.json")
@@ -110,13 +110,12 @@ def residual_shape(
     Returns:
         Its fields.
     """
-    entry = {
+    return {
         "shape": shape,
         "location": location,
         "says": description,
         "closed_beyond": closed_beyond,
     }
-    return entry | {"gain": 0.0}
 
 
 @dataclass(frozen=True)
@@ -145,9 +144,7 @@ class Diagnosis:
     """Remarks on the logs."""
     sensitivity: tuple[Mapping[str, Any], ...] = ()
     """Smallest change of each effect's parameters that these logs would have shown, see
-    `sensitivity`."""
-    nuisance: tuple[Mapping[str, Any], ...] = ()
-    """Nuisance parameters that were fitted along, the largest first, in usual sizes."""
+    `gap/inference/detectable.py`."""
     provenance: Mapping[str, Any] = field(default_factory=dict)
     """Robot, logs, versions, seed and commit."""
     remainder: float | None = None

@@ -69,7 +69,7 @@ def base_motion(
     force = None
     if felt is not None:
         arm = subject.imu_position
-        # as it was felt: jerks are no noise, and who residuals forces filters both sides alike
+        # not smoothed: residuals of forces are filtered later, together with the model's side
         force = (
             on_ticks(log, felt, ticks) @ subject.imu_rotation.T
             - np.cross(angular_acceleration, arm)

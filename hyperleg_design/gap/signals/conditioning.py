@@ -41,14 +41,14 @@ from hyperleg_design.simulation.drives import limits
 EDGE = 4.0
 """Time that is left out beside gaps and at the ends of a log, times the crossover frequency of the
 slowest smoother [rad]."""
+LONGEST_EDGE = 0.25
+"""Most of that time, however slow the smoother is [s]."""
 STOP = 0.003
 """Distance from the end of a joint's range within which its stop may push [rad]; assumed, a few
 steps of a sensor."""
 NO_STOP = 0.1
 """Distance beyond its range that shows that a joint has no stop there [rad]; assumed, more than any
 stop gives way."""
-LONGEST_EDGE = 0.25
-"""Most of that time, however slow the smoother is [s]."""
 
 
 def condition(log: Log, subject: Subject) -> Signals:

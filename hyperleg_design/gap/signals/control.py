@@ -1,9 +1,8 @@
 """Residual of the control: motor commands as logged against what the declared gains make of the
 logged targets and state.
 
-It is drawn up for controllers of the declared form alone. Others (feed-forward, integral terms,
-gravity compensation) ask for torques that no gains explain; of them nothing is known, and nothing
-said.
+Only controllers of the declared form have this residual. Others (feed-forward, integral terms,
+gravity compensation) ask for torques that gains do not explain.
 """
 
 from __future__ import annotations

@@ -9,8 +9,8 @@ LuGre models),
 
 where twice s, as noise alone never lets it stay at its ends. A joint that comes to rest keeps it:
 right on ramps slower than the noise of the velocity, and in holds that a damped controller creeps
-into; where a joint sticks while its controller pulls it the other way, nothing but the torque
-itself tells the friction: such rest is in no residual, `holding` speaks of it.
+into. Where a joint sticks while its controller pulls it the other way, only the torque tells the
+friction, and residuals leave such rest out.
 """
 
 from __future__ import annotations

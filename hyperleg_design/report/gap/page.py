@@ -218,7 +218,6 @@ def _details(
         _limits(diagnosis),
         Details("What is left", list(left)) if left else None,
         _not_judged(diagnosis),
-        _listed("Calibration errors that were fitted along", diagnosis.get("nuisance", ())),
         _remarks(diagnosis),
     ]
     return [figure_or_none for figure_or_none in figures if figure_or_none is not None]
@@ -311,12 +310,3 @@ def _remarks(diagnosis: Mapping[str, Any]) -> Details | None:
     """Remarks of the checks of the logs."""
     rows = [[plain(entry)] for entry in diagnosis.get("checks", ())]
     return Details("Remarks on the logs", [Table(["remark"], rows)]) if rows else None
-
-
-def _listed(summary: str, entries: Sequence[Mapping[str, Any]]) -> Details | None:
-    """Entries of equal keys as a table."""
-    if not entries:
-        return None
-    header = list(dict.fromkeys(key for entry in entries for key in entry))
-    rows = [[plain(entry.get(key, "")) for key in header] for entry in entries]
-    return Details(summary, [Table([key.replace("_", " ") for key in header], rows)])

@@ -64,7 +64,7 @@ class Wrong:
     location: str
     """Joint, motor, link, foot, `imu`, `battery` or `robot`."""
     size: float
-    """In the unit that the plants give this effect; see `size_of`."""
+    """In the unit that the plants give this effect."""
     shape: Mapping[str, float]
     """What else it needs, such as the order of cogging."""
 

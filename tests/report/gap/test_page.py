@@ -124,7 +124,6 @@ def test_what_is_left_of_an_unknown_gap_follows_the_verdict(tmp_path: Path, sign
         "location": "swing",
         "says": "swing: friction that depends on where the joint is",
         "closed_beyond": 0.9,
-        "gain": 20.0,
     }
     text = written(tmp_path, diagnosis("unknown", residual_shape=[shape]), signals)
     assert '<p class="lead">Left at swing: friction that depends on where the joint is.</p>' in text
