@@ -5,11 +5,11 @@ it shrinks with them.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.checks.check import Check, check_log
+from hyperleg_design.gap.checks.check import Check
+from hyperleg_design.gap.checks.intake import Intake, prepare
 from hyperleg_design.gap.inference.detectors.sinking import EFFECT as SOFT
 from hyperleg_design.gap.inference.detectors.sinking import sinks
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
@@ -17,12 +17,9 @@ from hyperleg_design.gap.inference.detectors.slipping import slips
 from hyperleg_design.gap.inference.effect_traces import places
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.logs.log import Log
-from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.pipeline.detected_causes import of_feet
 from hyperleg_design.gap.pipeline.judge import judge_signals
 from hyperleg_design.gap.results.diagnosis import Diagnosis
-from hyperleg_design.gap.signals.conditioning import condition
-from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.gap.signals.signals import Signals
 
 
@@ -57,68 +54,44 @@ def diagnose(
         InputError: no log to diagnose, a log that is not fit for it, or one that does not go with
             the robot.
     """
-    say = show or (lambda _: None)
-    tests = [log for log in logs if log.metadata.role != "reference"]
-    well = [*(log for log in logs if log.metadata.role == "reference"), *reference]
-    healthy = [log.changed(metadata=replace(log.metadata, role="reference")) for log in well]
-    if not tests:
-        remedy = "name no log to be diagnosed: give at least one that is not a reference"
-        raise InputError("diagnose", "logs", len(logs), remedy)
-    subject, before = subjects(robot, reference_robot, tests, healthy)
-    checks = [
-        *(check_log(log, subject) for log in tests),
-        *(check_log(log, before) for log in healthy),
-    ]
-    for check in checks:
-        check.refuse()
-    say(f"comparing {len(checks)} logs with the model of {subject.name}")
+    intake = prepare(robot, logs, reference, reference_robot=reference_robot)
+    return diagnose_intake(intake, seed=seed, threads=threads, show=show, rules=rules)
+
+
+def diagnose_intake(
+    intake: Intake,
+    *,
+    seed: int = 0,
+    threads: int = 2,
+    show: Callable[[str], None] | None = None,
+    rules: InferenceRules | None = None,
+) -> Diagnosis:
+    """Diagnose logs that are checked and conditioned, as `diagnose` does.
+
+    Args:
+        intake: the logs and their robot.
+        seed: of the bootstrap.
+        threads: that share the work.
+        show: takes lines of progress.
+        rules: numbers that the inference decides by; the usual ones by default.
+
+    Returns:
+        The diagnosis.
+
+    Raises:
+        InputError: no log has a residual.
+    """
+    if show is not None:
+        show(f"comparing {len(intake.checks)} logs with the model of {intake.subject.name}")
     return diagnose_signals(
-        [condition(log, subject) for log in tests],
-        [condition(log, before) for log in healthy],
+        intake.tests,
+        intake.references,
         seed=seed,
         threads=threads,
         show=show,
-        checks=checks,
+        checks=intake.checks,
         rules=rules,
     )
-
-
-def subjects(
-    robot: str | Path | None,
-    reference_robot: str | Path | None,
-    tests: Sequence[Log],
-    references: Sequence[Log],
-) -> tuple[Subject, Subject]:
-    """Nominal models of the robot in the tests and in the references.
-
-    Args:
-        robot: of the tests, and of the references unless they have their own.
-        reference_robot: of the references; none: the same.
-        tests: logs to be diagnosed.
-        references: logs of the healthy robot.
-
-    Returns:
-        The two, the same object where there is one model.
-
-    Raises:
-        InputError: a robot that cannot be read or does not go with its logs, a robot for references
-            that are not there, or two robots whose joints or motors differ.
-    """
-    if not reference_robot:
-        subject = load_subject(robot, [*tests, *references])
-        return subject, subject
-    if not references:
-        remedy = "needs reference logs: name them with --reference"
-        raise InputError("diagnose", "reference_robot", str(reference_robot), remedy)
-    subject, before = load_subject(robot, tests), load_subject(reference_robot, references)
-    for what in ("joints", "motors"):
-        now, then = getattr(subject, what), getattr(before, what)
-        if now != then:
-            remedy = (
-                f"has other {what} than {subject.name}: {', '.join(then)}, not {', '.join(now)}"
-            )
-            raise InputError("diagnose", "reference_robot", str(reference_robot), remedy)
-    return subject, before
 
 
 def diagnose_signals(

@@ -9,10 +9,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from hyperleg_design.gap.checks.intake import open_logs
+from hyperleg_design.gap.checks.intake import take_in
 from hyperleg_design.gap.experiments.excite import excite
-from hyperleg_design.gap.pipeline.diagnose import diagnose, subjects
-from hyperleg_design.gap.signals.conditioning import condition
+from hyperleg_design.gap.pipeline.diagnose import diagnose_intake
 from hyperleg_design.report.gap.excite import plan_text, write_report
 from hyperleg_design.report.gap.page import write_gap_page
 from hyperleg_design.report.gap.run import Run
@@ -55,22 +54,14 @@ def diagnose_to_folder(
         OutputError: the folder cannot be written.
     """
     check_output_folder(out)
-    tests, healthy = open_logs(sources, references)
-    diagnosis = diagnose(
-        robot or None,
-        tests,
-        healthy,
-        reference_robot=reference_robot or None,
-        seed=seed,
-        threads=threads,
-        show=show,
-    ).mapping()
-    subject, _ = subjects(robot or None, reference_robot or None, tests, healthy)
-    run = Run(robot or subject.path, tuple(os.fspath(source) for source in sources), os.fspath(out))
+    intake = take_in(robot, sources, references, reference_robot=reference_robot)
+    diagnosis = diagnose_intake(intake, seed=seed, threads=threads, show=show).mapping()
+    run = Run(
+        robot or intake.subject.path, tuple(os.fspath(source) for source in sources), os.fspath(out)
+    )
     with output_folder(out) as folder:
         write_json(folder / "diagnosis.json", diagnosis)
-        shown = [condition(log, subject) for log in tests[:MOST_SHOWN]]
-        write_gap_page(folder, diagnosis, shown, run)
+        write_gap_page(folder, diagnosis, intake.tests[:MOST_SHOWN], run)
     return diagnosis, Path(out) / "index.html"
 
 

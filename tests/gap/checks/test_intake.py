@@ -7,7 +7,7 @@ import pytest
 from robots import PENDULUM, servo_run, waves
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.checks.intake import open_logs, take_in
+from hyperleg_design.gap.checks.intake import take_in
 from hyperleg_design.gap.logs.log import write_log
 from hyperleg_design.gap.playback.measure import measure
 from hyperleg_design.report.gap.text import gap_text
@@ -47,8 +47,8 @@ def test_a_recording_counts_once(folder: Path, tmp_path: Path) -> None:
     heavy, clean = folder / "heavy.parquet", folder / "clean.parquet"
     for sources, references in (([heavy, copy], []), ([heavy], [copy]), ([heavy], [clean, clean])):
         with pytest.raises(InputError, match="each recording counts once"):
-            open_logs(sources, references)
-    assert len(open_logs([heavy], [clean])[1]) == 1
+            take_in(str(folder / "pendulum.xml"), sources, references)
+    assert len(take_in(str(folder / "pendulum.xml"), [heavy], [clean]).references) == 1
 
 
 def test_nothing_to_test_is_told(folder: Path) -> None:

@@ -8,7 +8,8 @@ import pytest
 import robots
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.pipeline.diagnose import diagnose, subjects
+from hyperleg_design.gap.checks.intake import prepare
+from hyperleg_design.gap.pipeline.diagnose import diagnose
 
 HEAVY = robots.COUPLED.replace('mass="0.8"', 'mass="1.6"')
 
@@ -41,13 +42,13 @@ def test_each_log_is_compared_with_the_model_of_its_own_robot(files):
 
 
 def test_robots_and_logs_that_do_not_go_together_are_refused(files):
-    log = diagnosed.run("healthy", 1)
+    log, other = (diagnosed.run("healthy", seed) for seed in (1, 2))
     with pytest.raises(InputError, match="needs reference logs"):
-        subjects(files["heavy"], files["light"], [log], [])
-    one, same = subjects(files["heavy"], None, [log], [log])
-    assert one is same
+        prepare(files["heavy"], [log], reference_robot=files["light"])
+    one = prepare(files["heavy"], [log], [other])
+    assert one.tests[0].subject is one.references[0].subject
     servos = robots.servo_run(robots.SERVOS, robots.waves(2, [0.6, 0.8], seed=1), 2.0)
     with pytest.raises(
         InputError, match=r"has other joints than heavy|has other motors than heavy"
     ):
-        subjects(files["heavy"], files["servos"], [log], [servos])
+        prepare(files["heavy"], [log], [servos], reference_robot=files["servos"])
