@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,16 +55,54 @@ def read_drives(model: Any, free_joints: Collection[str]) -> Drives:
     Returns:
         Drives over these joints, in the model's order.
     """
+    single = [j for j in single_joints(model) if _name(model, j) in free_joints]
+    dofs = np.array([model.jnt_dofadr[j] for j in single])
+    moment = _moment(model)
+    usable, notes = _usable(model, moment[:, dofs])
+    actuators = _Actuators(
+        model,
+        joints=tuple(_name(model, j) for j in single),
+        indices=usable,
+        names=tuple(model.actuator(i).name or f"actuator_{i}" for i in usable),
+        matrix=moment[usable][:, dofs].T,
+        limit=np.array([_force_limit(model, i) for i in usable]),
+        armature=model.dof_armature[dofs],
+        tendons=fixed_tendons(model, single),
+        notes=notes,
+    )
+    if np.all(np.count_nonzero(actuators.matrix, 0) <= 1):
+        most = np.abs(model.jnt_actfrcrange[single]).max(1)
+        effort = np.where(model.jnt_actfrclimited[single] != 0, most, np.inf)
+        return _one_a_joint(actuators, effort)
+    return _coupled(actuators)
+
+
+@dataclass(frozen=True, eq=False)
+class _Actuators:
+    """The actuators of a file that drive its n free joints, `a` of them."""
+
+    model: Any
+    joints: tuple[str, ...]
+    indices: np.ndarray
+    """In the model `(a,)`."""
+    names: tuple[str, ...]
+    matrix: np.ndarray
+    """Joint torque over actuator force `(n, a)`."""
+    limit: np.ndarray
+    """Largest force of each `(a,)`."""
+    armature: np.ndarray
+    """Of the joints `(n,)` [kg m^2]."""
+    tendons: Sequence[Tendon]
+    notes: tuple[str, ...]
+
+
+def _usable(model: Any, moment: np.ndarray) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Actuators whose lever is the same in every posture, of those that drive a joint, and a note
+    on each of the others; `moment` is joint torque over force `(nu, n)`.
+    """
     import mujoco
 
-    single = [j for j in single_joints(model) if _name(model, j) in free_joints]
-    joints = tuple(_name(model, j) for j in single)
-    dofs = np.array([model.jnt_dofadr[j] for j in single])
-    count = len(joints)
-    notes: list[str] = []
-    moment = _moment(model)
-    tendons = fixed_tendons(model, single)
-    usable_indices = []
+    indices, notes = [], []
     for index in range(model.nu):
         kind = mujoco.mjtTrn(model.actuator_trntype[index]).name
         wraps_sites = kind == "mjTRN_TENDON" and not _is_fixed_tendon(
@@ -75,73 +113,91 @@ def read_drives(model: Any, free_joints: Collection[str]) -> Drives:
                 f"actuator {model.actuator(index).name} acts through {kind}, whose lever changes "
                 f"with posture: left out"
             )
-        elif np.any(moment[index, dofs]):
-            usable_indices.append(index)
-    usable = np.array(usable_indices, int)
-    matrix = moment[usable][:, dofs].T
-    names = [model.actuator(i).name or f"actuator_{i}" for i in usable]
-    limit = np.array([_force_limit(model, i) for i in usable])
-    stiffness, damping = np.array([_feedback(model, i) for i in usable]).reshape(-1, 2).T
-    armature = model.dof_armature[dofs]
-    most = np.abs(model.jnt_actfrcrange[single]).max(1)
-    effort = np.where(model.jnt_actfrclimited[single] != 0, most, np.inf)
+        elif np.any(moment[index]):
+            indices.append(index)
+    return np.array(indices, int), tuple(notes)
+
+
+def _one_a_joint(actuators: _Actuators, effort: np.ndarray) -> Drives:
+    """Drives where no actuator moves two joints: each joint is its own motor, up to its `effort`
+    `(n,)` [Nm].
+    """
+    model, matrix, joints = actuators.model, actuators.matrix, actuators.joints
+    count, own = len(joints), matrix != 0
+    driven, most = np.ones(count, bool), np.full(count, np.inf)
+    if len(actuators.indices):
+        driven = own.any(1)
+        most = np.array(
+            [
+                sum(
+                    abs(lever) * force
+                    for lever, force in zip(row, actuators.limit, strict=True)
+                    if lever
+                )
+                for row in matrix
+            ]
+        )
     gains = np.full((count, 2), np.nan)
-    if np.all(np.count_nonzero(matrix, 0) <= 1):
-        own = matrix != 0
-        driven = own.any(1) if usable_indices else np.ones(count, bool)
-        servo = (own & (stiffness > 0)).any(1)
-        for column, values in enumerate((stiffness, damping)):
-            gains[servo, column] = (matrix[servo] ** 2 * values).sum(1)
-        reached = np.where(own, np.abs(matrix), 0.0)
-        total = (
-            np.array([sum(r * f for r, f in zip(row, limit, strict=True) if r) for row in reached])
-            if usable_indices
-            else np.full(count, np.inf)
-        )
-        rotor = armature + matrix**2 @ model.actuator_armature[usable]
-        for tendon in tendons:
-            rotor = rotor + (np.diag(tendon.inertia) if tendon.single else 0.0)
-        alias = [next((names[a] for a in np.flatnonzero(own[j])), joints[j]) for j in range(count)]
-        gear = np.array(
-            [float(matrix[j, own[j]][0]) if own[j].sum() == 1 else 1.0 for j in range(count)]
-        )
-        return Drives(
-            joints,
-            tuple(alias),
-            np.eye(count),
-            gear,
-            gains,
-            np.minimum(total, effort),
-            rotor,
-            np.zeros(count),
-            tuple(t for t in tendons if t.armature and not t.single),
-            ~driven,
-            tuple(notes),
-        )
-    rotor = np.array(model.actuator_armature[usable])
+    stiffness, damping = np.array([_feedback(model, i) for i in actuators.indices]).reshape(-1, 2).T
+    servo = (own & (stiffness > 0)).any(1)
+    for column, values in enumerate((stiffness, damping)):
+        gains[servo, column] = (matrix[servo] ** 2 * values).sum(1)
+    rotor = actuators.armature + matrix**2 @ model.actuator_armature[actuators.indices]
+    for tendon in actuators.tendons:
+        rotor = rotor + (np.diag(tendon.inertia) if tendon.single else 0.0)
+    names = [
+        next((actuators.names[a] for a in np.flatnonzero(mine)), joint)
+        for joint, mine in zip(joints, own, strict=True)
+    ]
+    gear = [
+        float(row[mine][0]) if mine.sum() == 1 else 1.0
+        for row, mine in zip(matrix, own, strict=True)
+    ]
+    return Drives(
+        names=joints,
+        aliases=tuple(names),
+        matrix=np.eye(count),
+        gear=np.array(gear),
+        gains=gains,
+        limit=np.minimum(most, effort),
+        rotor_inertia=rotor,
+        armature=np.zeros(count),
+        couplings=tuple(t for t in actuators.tendons if t.armature and not t.single),
+        passive=~driven,
+        notes=actuators.notes,
+    )
+
+
+def _coupled(actuators: _Actuators) -> Drives:
+    """Drives where some actuator moves several joints: each actuator is a motor."""
+    import mujoco
+
+    model, indices = actuators.model, actuators.indices
+    rotor, armature = np.array(model.actuator_armature[indices]), actuators.armature
     couplings = []
-    for tendon in tendons:
-        by_tendon = model.actuator_trntype[usable] == mujoco.mjtTrn.mjTRN_TENDON
-        pulling = np.flatnonzero(by_tendon & (model.actuator_trnid[usable, 0] == tendon.index))
+    for tendon in actuators.tendons:
+        by_tendon = model.actuator_trntype[indices] == mujoco.mjtTrn.mjTRN_TENDON
+        pulling = np.flatnonzero(by_tendon & (model.actuator_trnid[indices, 0] == tendon.index))
         if len(pulling) == 1:  # the motor turns gear times as fast as the tendon lengthens
-            ratio = float(model.actuator_gear[usable[pulling[0]], 0])
+            ratio = float(model.actuator_gear[indices[pulling[0]], 0])
             rotor[pulling[0]] += tendon.armature / ratio**2
         elif tendon.single:
             armature = armature + np.diag(tendon.inertia)
         elif tendon.armature:
             couplings.append(tendon)
+    count = len(actuators.joints)
     return Drives(
-        tuple(names),
-        tuple(names),
-        matrix,
-        np.ones(len(names)),
-        gains,
-        limit,
-        rotor,
-        armature,
-        tuple(couplings),
-        np.zeros(count, bool),
-        tuple(notes),
+        names=actuators.names,
+        aliases=actuators.names,
+        matrix=actuators.matrix,
+        gear=np.ones(len(actuators.names)),
+        gains=np.full((count, 2), np.nan),
+        limit=actuators.limit,
+        rotor_inertia=rotor,
+        armature=armature,
+        couplings=tuple(couplings),
+        passive=np.zeros(count, bool),
+        notes=actuators.notes,
     )
 
 
