@@ -70,15 +70,23 @@ class GapSize:
 
     @cached_property
     def counts(self) -> np.ndarray:
-        """Channels that count, all in the unit of the largest `(channels,)` of bool."""
-        channels = self.evidence.channels
-        units = [RESIDUALS[channel.residual][1] for channel in channels]
-        shown = np.array([bool(self.held.trace[each.under_test].any()) for each in channels])
-        shown |= self.odd if shown.any() else True
-        largest = int(np.argmax(np.where(shown, self.excess, -1.0)))
+        """Channels that count for the gap `(channels,)` of bool."""
+        shown = self._shown(self.held.trace)
+        shown = shown | self.odd if shown.any() else np.ones_like(shown)
+        return self._largest(self.excess, shown)
+
+    def _shown(self, trace: np.ndarray) -> np.ndarray:
+        """Channels in which a trace `(S,)` shows under test `(channels,)` of bool."""
+        return np.array([trace[each.under_test].any() for each in self.evidence.channels], bool)
+
+    def _largest(self, excess: np.ndarray, shown: np.ndarray) -> np.ndarray:
+        """Of the channels that are `shown`, those whose excess is not much smaller than the
+        largest, all in its unit `(channels,)` of bool.
+        """
+        units = [RESIDUALS[channel.residual][1] for channel in self.evidence.channels]
+        largest = int(np.argmax(np.where(shown, excess, -np.inf)))
         same = np.array([unit == units[largest] for unit in units])
-        least = self.rules.posterior.counts * self.excess[largest]
-        return shown & same & (self.excess >= least)
+        return shown & same & (excess >= self.rules.posterior.counts * excess[largest])
 
     @property
     def unit(self) -> str:
@@ -104,22 +112,40 @@ class GapSize:
     @property
     def closed(self) -> float:
         """Share of the gap beyond `lowest` that the causes close; 0 where there is none."""
-        return self.share_closed(self.total(self.before), self.total(self.before))
+        return self._share(self.before, self.before, self.counts)
 
-    def share_closed(self, before: float, whole: float) -> float:
-        """Share of a gap that goes where a mean square shrinks to that with the causes.
+    def closed_by(self, trace: np.ndarray, *, standing: bool) -> float:
+        """Compute the share of the gap that one of the causes closes, in the channels in which it
+        closes most: the share that would stay open without it.
 
         Args:
-            before: mean square that shrinks.
-            whole: mean square of the gap.
+            trace: what the cause leaves `(S,)`, in the residuals' units.
+            standing: whether it acts in the references, too; then the gap is what is left where
+                this cause alone is taken away.
 
         Returns:
-            The share; 0 where there is no gap beyond `lowest`.
+            The share; 0 where there is no gap beyond noise.
         """
-        gap = np.sqrt(whole) - self.lowest
-        if gap <= 1e-9 * np.sqrt(whole):
+        alone = self.squares(self.held.before - (self.held.trace - trace))
+        shown = self._shown(trace)
+        counts = self._largest(alone - self.after, shown) if shown.any() else self.counts
+        return self._share(alone, alone if standing else self.before, counts)
+
+    def _share(self, before: np.ndarray, whole: np.ndarray, counts: np.ndarray) -> float:
+        """Share of a gap that goes where mean squares shrink to those with the causes.
+
+        Args:
+            before: mean squares that shrink `(channels,)`.
+            whole: those of the gap `(channels,)`.
+            counts: channels that count `(channels,)` of bool.
+        """
+        shrinking, gap, after, noise = (
+            float(np.mean(squares[counts])) for squares in (before, whole, self.after, self.noise)
+        )
+        beyond = np.sqrt(gap) - np.sqrt(min(noise, after))
+        if beyond <= 1e-9 * np.sqrt(gap):
             return 0.0
-        return float(min((np.sqrt(before) - np.sqrt(self.total(self.after))) / gap, 1.0))
+        return float(min((np.sqrt(shrinking) - np.sqrt(after)) / beyond, 1.0))
 
     def drawn(self, seed: int) -> np.ndarray:
         """Share closed in bootstrap draws of blocks `(DRAWS,)`.

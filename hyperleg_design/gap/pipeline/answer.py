@@ -193,16 +193,13 @@ class Answer:
             place: index of the cause among its causes.
 
         Returns:
-            The share; of a cause that acts in the references, too, of the gap that is left where
-            this cause alone is taken away; 0 of another hypothesis than the most probable one.
+            The share, see `GapSize.closed_by`; 0 of another hypothesis than the most probable one.
         """
         if hypothesis is not self.posterior.hypothesis or not self.posterior.hypothesis.causes:
             return 0.0
-        size, cause = self.size, hypothesis.causes[place]
-        own = cause.trace(hypothesis.theta[hypothesis.parts[place]])
-        alone = size.total(size.squares(size.held.before - (size.held.trace - own)))
-        whole = alone if cause.standing else size.total(size.before)
-        return max(size.share_closed(alone, whole), WORST)
+        cause = hypothesis.causes[place]
+        trace = cause.trace(hypothesis.theta[hypothesis.parts[place]])
+        return max(self.size.closed_by(trace, standing=cause.standing), WORST)
 
     def rivals(self) -> tuple[Named, ...]:
         """Other candidates, most probable first; one an effect and place, as the same effect at all

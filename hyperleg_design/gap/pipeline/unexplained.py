@@ -26,6 +26,9 @@ from hyperleg_design.gap.signals.signals import Signals
 
 CYCLES, RINGS = HIDING = "limit cycle", "ringing"
 """Names in `Diagnosis.residual_shape` of what faults are lost in."""
+MOVES = 1.5
+"""Motion of a joint where one rings, over that in the references, from which it is mentioned [-];
+assumed."""
 MOST_CHANNELS = 3
 """Channels that are named where no listed effect says why they are larger or noisier."""
 
@@ -89,6 +92,11 @@ class Unexplained:
                 f"small faults cannot be seen: look for play, a belt that gives, a loose part, or "
                 f"a control loop on the edge of stability"
             )
+            if heard.moves > MOVES:
+                text += (
+                    f", first at {heard.mover}, which moves {heard.moves:.2g} times as much there "
+                    f"as in the references"
+                )
             shapes.append(residual_shape(RINGS, joint, text, 0.0))
         remainder = self.posterior.remainder
         for cause, text in self.unlisted_causes:

@@ -50,8 +50,8 @@ class Named:
     probability: float
     """Posterior probability [-]."""
     closed: float
-    """Share of the excess gap that it closes on held-out data; of several causes, the share that
-    would stay open without it [-]."""
+    """Share of the excess gap that it closes on held-out data, at the residuals in which it shows;
+    of several causes, the share that would stay open without it [-]."""
     parameters: Mapping[str, Value]
     """Parameters of the effect by name."""
 

@@ -97,12 +97,21 @@ def test_the_unit_is_that_of_the_joints_that_count():
     assert size(large, small, small, ("transmission",) * 2, hinge=(False, True)).unit == "m/s"
 
 
-def test_a_part_of_the_causes_closes_its_own_share():
-    found = size([25.0, 25.0], [1.0, 1.0], [1.0, 1.0])
-    assert found.share_closed(9.0, 25.0) == pytest.approx((3 - 1) / (5 - 1))
-
-
 def test_draws_of_equal_blocks_all_close_what_the_logs_close():
     found = size([25.0, 25.0], [9.0, 9.0], [1.0, 1.0])
     assert found.drawn(0) == pytest.approx(np.full(400, found.closed))
     np.testing.assert_array_equal(found.drawn(1), found.drawn(1))
+
+
+def test_a_cause_closes_what_would_stay_open_without_it_where_it_closes_most():
+    """Two causes at two joints, of which one leaves 30 times the residual of the other."""
+    found = size([900.0, 4.0], [1.0, 1.0], [1.0, 1.0])
+    first, second = np.repeat([1.0, 0.0], COUNT), np.repeat([0.0, 1.0], COUNT)
+    left = (found.held.before - found.held.after) * (first + second)
+    found.held.trace = left
+    assert found.counts.tolist() == [True, False]
+    assert found.closed_by(left * first, standing=False) == pytest.approx(1.0)
+    assert found.closed_by(left * second, standing=False) == pytest.approx(1.0)
+    half = left / 2  # the other half is closed by another cause at the same joints
+    assert found.closed_by(half, standing=False) == pytest.approx((15.5 - 1) / (30 - 1))
+    assert found.closed_by(half, standing=True) == pytest.approx(1.0)

@@ -16,7 +16,10 @@ from scipy.signal import welch
 
 from hyperleg_design.gap.inference.white_noise import has_room, white_density
 from hyperleg_design.gap.signals.filtering import FilteredLog, Row
+from hyperleg_design.gap.signals.smoothing import bridged
 
+AROUND = 0.2
+"""Half the width of the band around that frequency in which motion is compared, over it [-]."""
 WINDOW = 1024
 """Most ticks in a window of the spectrum in which the loudest frequency is looked up."""
 
@@ -30,6 +33,10 @@ class Ringing:
     loudest log, over that in the loudest reference [-]."""
     frequency: float
     """Above those of the motion, at which this log is loudest [Hz]."""
+    mover: str
+    """Joint whose motion at this frequency is farthest above that in the references."""
+    moves: float
+    """How far: root mean square over the largest of the references [-]."""
 
 
 def ringing(
@@ -55,7 +62,9 @@ def ringing(
         loudest = int(np.argmax(own))
         if before > 0 and own[loudest] > least * before:
             times = float(np.sqrt(own[loudest] / before))
-            over[joint] = Ringing(times, _loudest_frequency(tests[loudest], joint))
+            frequency = _loudest_frequency(tests[loudest], joint)
+            mover, moves = _mover(tests[loudest], references, frequency)
+            over[joint] = Ringing(times, frequency, mover, moves)
     return dict(sorted(over.items(), key=lambda entry: -entry[1].times))
 
 
@@ -66,6 +75,33 @@ def _loudest_frequency(log: FilteredLog, joint: str) -> float:
     frequency, density = welch(values, 1 / step, nperseg=min(WINDOW, len(values)))
     above = frequency >= min(row.cutoff, 0.25 / step)
     return float(frequency[above][np.argmax(density[above])])
+
+
+def _mover(
+    log: FilteredLog, references: Sequence[FilteredLog], frequency: float
+) -> tuple[str, float]:
+    """Joint whose motion at a frequency is farthest above that in the references, and how far."""
+    moved = _motion_at(log, frequency)
+    before = {
+        joint: max(_motion_at(other, frequency).get(joint, 0.0) for other in references)
+        for joint in moved
+    }
+    ratios = {joint: size / before[joint] for joint, size in moved.items() if before[joint] > 0}
+    mover = max(ratios, key=lambda joint: ratios[joint], default="")
+    return mover, ratios.get(mover, 0.0)
+
+
+def _motion_at(log: FilteredLog, frequency: float) -> dict[str, float]:
+    """By joint, the root mean square of its logged motion around a frequency."""
+    recording, sizes = log.signals.log, {}
+    for joint in log.signals.subject.joints:
+        position = recording.column(f"position/{joint}")
+        if np.isfinite(position).any():
+            speed = np.diff(bridged(position))
+            at, density = welch(speed, 1 / recording.step, nperseg=min(WINDOW, len(speed)))
+            around = np.abs(at / frequency - 1) < AROUND
+            sizes[joint] = float(np.sqrt(density[around].sum()))
+    return sizes
 
 
 def _densities(log: FilteredLog) -> dict[str, float]:

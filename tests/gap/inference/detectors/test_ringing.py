@@ -63,6 +63,21 @@ def test_the_loudest_frequency_is_that_of_the_resonance(filtered):
     assert all(27 < heard.frequency < 33 for heard in over.values())
 
 
+def test_the_joint_that_moves_at_that_frequency_is_known(filtered):
+    def moving(seed, size):
+        log = shaken(seed, 0.2 if size else 0.01)
+        swing = size * np.sin(2 * np.pi * 30 * log.time)
+        return log.changed(
+            signals={**log.signals, "position/knee": log.column("position/knee") + swing}
+        )
+
+    over = ringing(filtered(moving(0, 1e-3)), filtered(moving(1, 0.0)), LOUD)
+    assert over
+    near = [heard for heard in over.values() if 25 < heard.frequency < 36]
+    assert all(heard.mover == "knee" and heard.moves > 5 for heard in near)
+    assert near
+
+
 def test_a_robot_that_rings_is_not_said_to_be_healthy(robot_files):
     logs = [shaken(seed, 0.5) for seed in (0, 1)]
     references = [shaken(seed, 0.005).changed(name=f"reference_{seed}") for seed in (2, 3)]
