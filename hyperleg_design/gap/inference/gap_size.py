@@ -86,7 +86,8 @@ class GapSize:
         units = [RESIDUALS[channel.residual][1] for channel in self.evidence.channels]
         largest = int(np.argmax(np.where(shown, excess, -np.inf)))
         same = np.array([unit == units[largest] for unit in units])
-        return shown & same & (excess >= self.rules.posterior.counts * excess[largest])
+        least = min(self.rules.posterior.counts * excess[largest], excess[largest])
+        return shown & same & (excess >= least)
 
     @property
     def unit(self) -> str:

@@ -115,3 +115,9 @@ def test_a_cause_closes_what_would_stay_open_without_it_where_it_closes_most():
     half = left / 2  # the other half is closed by another cause at the same joints
     assert found.closed_by(half, standing=False) == pytest.approx((15.5 - 1) / (30 - 1))
     assert found.closed_by(half, standing=True) == pytest.approx(1.0)
+
+
+def test_a_cause_that_makes_it_worse_everywhere_closes_less_than_nothing():
+    found = size([16.0, 16.0], [16.0, 25.0], [1.0, 1.0])
+    found.held.trace = (found.held.before - found.held.after) * np.ones(2 * COUNT)
+    assert found.closed_by(found.held.trace, standing=False) == pytest.approx((4 - 5) / (4 - 1))

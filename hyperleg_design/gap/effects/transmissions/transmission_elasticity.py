@@ -62,7 +62,8 @@ class TransmissionElasticity(GearEffect):
     needs: ClassVar[Need] = Need(
         lambda motion: motion.content > TELLING,
         f"motion reaches past {TELLING:.0f} Hz",
-        f"motion holds nothing above {TELLING:.0f} Hz: looks like delay",
+        f"motion holds nothing above {TELLING:.0f} Hz: a stiff belt looks like a delay; a soft one "
+        "may show where encoders sit on the rotors",
         speeds=True,
     )
     told_apart: ClassVar[Mapping[str, Set[str]]] = {

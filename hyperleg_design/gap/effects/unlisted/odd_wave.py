@@ -46,6 +46,14 @@ class OddWave(Flexible):
         return super().odds(location, subject, values) - 2 * float(np.log(len(TURNS)))
 
     @override
+    def describe(self, values: np.ndarray) -> str:
+        sizes, orders = np.hypot(values[:4:2], values[1:4:2]), values[4:6]
+        order = float(orders[np.argmax(sizes)])
+        if self.input_of(values) == "time":
+            return f"{super().describe(values)}, at {order / (2 * np.pi):.2g} Hz"
+        return f"{super().describe(values)}, {order:.3g} times a turn"
+
+    @override
     def variants(self, signals: Signals, location: str) -> np.ndarray:
         variants = super().variants(signals, location)
         joint = signals.subject.joints.index(location)

@@ -37,3 +37,10 @@ def test_waves_of_the_motor_grow_with_the_load(pendulum):
     load = np.nan_to_num(signals.rigid[:, 0])
     wave = np.sin(5 * signals.position[:, 0])
     np.testing.assert_allclose(found[:, 0], load / np.sqrt(np.mean(load**2)) * wave, atol=1e-12)
+
+
+def test_its_sentence_says_how_often_the_larger_wave_repeats():
+    push = np.array([0.0, 0.1, 0.3, 0.4, 2 * np.pi * 9, 2 * np.pi * 2.3, 1.0])
+    assert WAVE.describe(push) == "takes a torque that repeats with time, at 2.3 Hz"
+    ripple = np.array([0.0, 1.0, 0.0, 0.2, 5.0, 7.0, 0.0])
+    assert WAVE.describe(ripple).endswith("with the angle of its motor, 5 times a turn")
