@@ -90,6 +90,7 @@ def drawing():
         pytest.skip(str(error))
 
 
+@pytest.mark.slow
 def test_a_recording_becomes_a_video_of_the_time_asked_for(recording, tmp_path, capsys, drawing):
     from PIL import Image
 

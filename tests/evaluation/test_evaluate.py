@@ -142,7 +142,11 @@ def same(a, b):
 
 
 @pytest.mark.parametrize(
-    ("policy", "task"), [("walk_upright-toe-1", "walk"), ("t_test_free-toe-0", "t_test")]
+    ("policy", "task"),
+    [
+        ("walk_upright-toe-1", "walk"),
+        pytest.param("t_test_free-toe-0", "t_test", marks=pytest.mark.slow),
+    ],
 )
 def test_a_batch_of_designs_gives_the_numbers_of_each_alone(policy, task):
     policy = load_policy(policy)

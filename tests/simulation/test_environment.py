@@ -25,7 +25,7 @@ def run(environment, actions):
     return rows
 
 
-@pytest.mark.parametrize("task", ["walk", "goal"])
+@pytest.mark.parametrize("task", ["walk", pytest.param("goal", marks=pytest.mark.slow)])
 def test_same_seed_same_bytes_for_any_number_of_threads(make, task):
     found = []
     for threads in (1, 2, 3):

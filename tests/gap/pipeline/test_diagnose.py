@@ -29,6 +29,7 @@ def test_a_cause_is_named_with_place_and_size(viscous):
     assert 0 < cause.probability <= 1
 
 
+@pytest.mark.slow
 def test_reference_logs_make_it_surer(robot_files):
     result = diagnosed.diagnosis(robot_files, "dry", references=(2, 3))
     assert (result.causes[0].effect, result.causes[0].location) == ("coulomb_friction", "hip")

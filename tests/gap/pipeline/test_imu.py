@@ -109,7 +109,7 @@ def test_a_constant_error_is_named_with_its_size(flyer, gyro, felt, references):
     assert found.gap.unit == ("rad/s" if any(gyro) else "m/s^2")
 
 
-@pytest.mark.parametrize("fault", ["leans", "turned"])
+@pytest.mark.parametrize("fault", ["leans", pytest.param("turned", marks=pytest.mark.slow)])
 def test_a_vertical_that_leans_and_a_sensor_that_is_turned_are_no_error_of_it(flyer, fault):
     found = told(flyer, flown(5, **{fault: (0.03, -0.05, 0)}))
     assert (found.verdict, found.causes) == ("unknown", ())

@@ -58,6 +58,7 @@ def test_zeros_that_friction_leaves_uncertain_are_no_fault(robot, references):
     assert not found.reference_differences
 
 
+@pytest.mark.slow
 def test_an_encoder_that_reads_otherwise_where_its_joint_hangs_is_one(robot, references):
     moved = log("now", 0.0, 3, shift=0.2)
     found = diagnose(robot, [moved], reference=references, threads=1)

@@ -10,6 +10,9 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.playback import show as module
 from hyperleg_design.gap.playback.show import effects_table, show
 
+QUICK = ("coulomb_friction", "payload", "command_delay", "backlash", "imu_bias")
+"""Effects on a joint, a link, the robot, a motor and a sensor; the others run among slow tests."""
+
 TOLD_APART = {
     "coulomb_friction",
     "viscous_friction",
@@ -58,7 +61,9 @@ def short(monkeypatch, without_effect):
     monkeypatch.setattr(module, "STANDING", 2.0)
 
 
-@pytest.mark.parametrize("name", EFFECTS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(e, marks=() if e in QUICK else pytest.mark.slow) for e in EFFECTS]
+)
 def test_every_effect_leaves_a_trace_and_moves_the_loop(name):
     shown = show(name)
     known = np.isfinite(shown.trace) & np.isfinite(shown.residual) & (shown.time > 0.5)

@@ -97,7 +97,7 @@ def geared(robot, log, scale, motor="m_back"):
     return log.changed(signals={**log.signals, f"motor_torque/{motor}": torque})
 
 
-@pytest.mark.parametrize("speeds", [False, True])
+@pytest.mark.parametrize("speeds", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_a_ratio_is_told_from_a_torque_constant(robot_files, speeds):
     """A motor that pulls 1.1 times as hard and turns 1.1 times as fast: its rotor's share of the
     torque tells it from a stronger motor, and the speeds of its rotor, where they are logged.

@@ -62,7 +62,9 @@ def test_operating_points_are_projected_and_coloured_by_power(design):
     assert power[2] + power[3] == pytest.approx(power[0] + power[1])
 
 
-@pytest.mark.parametrize("variant", ["toe", "toe_locked", "toe_removed_matched", "toe_removed"])
+@pytest.mark.parametrize(
+    "variant", ["toe", pytest.param("toe_locked", marks=pytest.mark.slow), "toe_removed_matched"]
+)
 def test_every_variant_can_be_drawn_and_saved(variant, tmp_path):
     robot = load_design("hyperleg", variant=variant)
     figure = figures.torque_speed_figure(robot)

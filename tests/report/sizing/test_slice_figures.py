@@ -50,7 +50,9 @@ def test_body_says_how_much_of_its_box_it_fills(design):
     assert f"{100 * share:.1f} %" in figure.axes[0].get_title()
 
 
-@pytest.mark.parametrize("variant", ["toe", "toe_locked", "toe_removed_matched", "toe_removed"])
+@pytest.mark.parametrize(
+    "variant", ["toe", pytest.param("toe_locked", marks=pytest.mark.slow), "toe_removed_matched"]
+)
 def test_every_variant_can_be_drawn_and_saved(variant, tmp_path):
     robot = load_design("hyperleg", variant=variant)
     for name in ("slice_figure", "polyhedron_figure"):

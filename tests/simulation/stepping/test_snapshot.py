@@ -12,7 +12,7 @@ from hyperleg_design.simulation.tasks import load_task
 from hyperleg_design.simulation.terms.assist import Assist
 
 
-@pytest.mark.parametrize("task", ["walk", "goal"])
+@pytest.mark.parametrize("task", ["walk", pytest.param("goal", marks=pytest.mark.slow)])
 def test_an_environment_put_back_goes_on_bit_for_bit(hyperleg: Design, task: str) -> None:
     def made() -> Environment:
         return Environment(

@@ -68,6 +68,7 @@ def test_the_same_seed_makes_the_same_trial(trial, tmp_path):
         assert all((log.signals[c] == other.signals[c]).all() for c in log.signals)
 
 
+@pytest.mark.slow
 def test_a_finished_trial_is_not_made_again_and_another_is_refused(trial):
     before = (trial / "key.zip").stat().st_mtime_ns
     make_trial(2, SEED, trial, plants=("rig",), duration=SHORT)

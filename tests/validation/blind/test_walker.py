@@ -47,6 +47,7 @@ def test_a_load_on_the_pelvis_is_felt_by_the_ground(robot):
     assert weights[1] - weights[0] == pytest.approx(3.0 * 9.81, rel=0.03)
 
 
+@pytest.mark.slow
 def test_smooth_ground_lets_feet_slip(robot):
     walker = Walker(robot, perfect(robot), Floor(1.0, 1.0, 1.0), Recorder())
     _, firm = walker.trace((), MOVING, 2.0, 0)

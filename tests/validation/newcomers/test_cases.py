@@ -27,6 +27,7 @@ def test_effects_are_of_the_catalogue_and_cases_of_every_kind_and_robot_are_ther
     assert len({case.name for case in cases}) == len(cases)
 
 
+@pytest.mark.slow
 def test_every_place_is_a_name_of_the_robot(monkeypatch):
     monkeypatch.setattr(plant, "DURATION", 0.2)
     for one in {(p.robot, w.what): p for p in PLANS for w in p.wrongs}.values():

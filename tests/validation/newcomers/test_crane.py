@@ -93,6 +93,7 @@ def test_commands_come_late_and_a_weak_motor_needs_more():
     assert 0.7 * size[1] == pytest.approx(size[0], rel=0.15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("what", "place", "size"),
     [("eccentric", 2, 0.03), ("dropout", 1, 0.06), ("crosstalk", 2, 0.4), ("stop", 1, 0.1)]

@@ -101,6 +101,7 @@ def test_the_floor_gives_under_a_standing_foot_as_the_file_says():
     assert slopes[1] == pytest.approx(slopes[0], rel=0.3)
 
 
+@pytest.mark.slow
 def test_torques_lag_and_a_weak_motor_needs_more():
     log = run(motion="trot", duration=4.0)
     asked, given = (log.signals[f"{k}/FR_calf"] for k in ("motor_torque_command", "motor_torque"))
@@ -112,6 +113,7 @@ def test_torques_lag_and_a_weak_motor_needs_more():
     assert 0.7 * weak == pytest.approx(right, rel=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("wrong", "column", "least"),
     [

@@ -62,6 +62,7 @@ def test_at_rest_the_motor_holds_the_load_up_to_its_friction():
         assert (np.abs(motor - data.qfrc_bias) < 1.1 * held + 0.02).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("what", "place", "size"),
     [

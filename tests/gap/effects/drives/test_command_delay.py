@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 from pendulum import Wrong, misfit
 
 from hyperleg_design.gap.effects import effect
@@ -30,6 +31,7 @@ def test_trace_is_what_late_targets_leave(pendulum):
         assert max(others, default=0.0) == 0.0
 
 
+@pytest.mark.slow
 def test_simulation_with_late_targets_leaves_its_trace(simulated):
     signals, plain = simulated("command_delay", [0.012, 1.0]), simulated("command_delay", None)
     signals.residual["drive"][:] -= np.mean(plain.residual["drive"])

@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 from pendulum import Wrong, misfit, waves
 
 from hyperleg_design.gap.effects import effect
@@ -51,6 +52,7 @@ def test_people_read_stiffness_and_resonance(pendulum):
     assert np.isclose(found["resonance"][0], 12.0)
 
 
+@pytest.mark.slow
 def test_simulation_with_encoders_at_the_rotor_leaves_the_trace_of_these(simulated):
     signals = simulated("transmission_elasticity", [0.01, 0.05, 1.0, 0.0, 0.0])
     right, wrong = (
@@ -61,6 +63,7 @@ def test_simulation_with_encoders_at_the_rotor_leaves_the_trace_of_these(simulat
     assert misfit(signals, wrong) > 1
 
 
+@pytest.mark.slow
 def test_rotors_show_it_beside_their_joints(pendulum):
     values = np.array([[0.01, 0.05, 0.0, 0.0, 0.0]])
     signals = pendulum(Wrong(compliance=0.01), gains=SOFT, sees=("motor_torque", "motor_velocity"))
