@@ -105,8 +105,10 @@ class Unexplained:
         return (*shapes, *self._larger(), *self._noisier())
 
     def _larger(self) -> list[dict[str, Any]]:
-        """Channels of which the causes leave more than a healthy robot does."""
-        left = np.maximum(self.size.after - self.size.noise, 0.0)
+        """Channels of which the causes leave more than a healthy robot does, but those in which a
+        cause that the catalogue lacks shows.
+        """
+        left = np.where(self.size.odd, 0.0, np.maximum(self.size.after - self.size.noise, 0.0))
         shapes = []
         for place in np.argsort(-left, kind="stable").tolist()[:MOST_CHANNELS]:
             if left[place] <= 0 or self.posterior.remainder <= 0:

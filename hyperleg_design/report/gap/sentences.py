@@ -226,7 +226,8 @@ def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
             f"seen{wide}."
         )
     if remainder:
-        texts.append(f"{100 * float(remainder):.0f} % of the gap is left that no effect explains.")
+        share = f"{100 * float(remainder):.0f} %"
+        texts.append(f"{share} of the gap is left that no effect of the catalogue explains.")
     if diagnosis["verdict"] == "unknown":
         nearest = [r for r in diagnosis["rivals"][:1] if float(r["probability"]) >= NEAREST]
         texts += [f"The nearest of all is {phrase(nearest)}." for _ in nearest]

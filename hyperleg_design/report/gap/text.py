@@ -229,7 +229,8 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
         for group in collapsed:
             lines += _cause_lines(title, group)
     if remainder:
-        lines.append(f"  remainder: {100 * remainder:.0f} % of the gap, which no effect explains")
+        share = f"{100 * remainder:.0f} %"
+        lines.append(f"  remainder: {share} of the gap, which no effect of the catalogue explains")
     lines += [
         f"  {shape['location']} {shape['says']}"
         for shape in diagnosis.get("residual_shape", ())

@@ -90,51 +90,60 @@ def checked(value: Any, rule: Rule, where: str, path: str) -> Any:
 
 
 def _checked_number(value: Any, rule: Rule, where: str, path: str) -> Any:
-    plain = type(value) is float and not rule.size and math.isfinite(value)
-    if plain and rule.low <= value <= rule.high:  # as nearly all are, without an array
-        return value
+    """A number or vector, or a batch of them as a read-only array, that keeps its rule.
+
+    Raises:
+        InputError: it does not.
+    """
+    low, high = rule.low, rule.high
+    if type(value) is float and not rule.size and low <= value <= high and math.isfinite(value):
+        return value  # as nearly all are, without an array
     unit = f" in {rule.unit}" if rule.unit else ""
     what = f"a vector of {rule.size} numbers{unit}" if rule.size else f"a number{unit}"
-    if isinstance(value, str):  # YAML reads 1e-3 as text
-        try:
-            value = float(value)
-        except ValueError:
-            raise InputError(
-                where, path, value, f"expects {what}, without a unit after it"
-            ) from None
-    try:
-        if isinstance(value, bool) or (
-            isinstance(value, list | tuple) and any(isinstance(v, bool) for v in value)
-        ):
-            raise TypeError
-        if isinstance(value, list | tuple):
-            value = [float(v) if isinstance(v, str) else v for v in value]
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(where, path, value, f"expects {what}") from None
-    if (rule.size and (array.ndim == 0 or array.shape[-1] != rule.size)) or array.ndim > (
-        2 if rule.size else 1
-    ):
-        raise InputError(where, path, value, f"expects {what}")
-    if not rule.size and isinstance(value, list | tuple):
+    array = _as_array(value, what, where, path)
+    if not _has_shape(array, value, rule.size):
         raise InputError(where, path, value, f"expects {what}")
     if array.ndim and array.shape[0] == 0:
         raise InputError(where, path, value, "is a batch of no designs")
     if not np.all(np.isfinite(array)):
         raise InputError(where, path, value, f"expects {what}, finite")
-    outside = (array < rule.low) | (array > rule.high)
+    outside = (array < low) | (array > high)
     if np.any(outside):
         worst = float(array[outside].flat[0]) if array.ndim else value
-        raise InputError(
-            where,
-            path,
-            worst,
-            f"expects {what} within {rule.low:g} .. {rule.high:g}; check unit and sign",
-        )
+        remedy = f"expects {what} within {low:g} .. {high:g}; check unit and sign"
+        raise InputError(where, path, worst, remedy)
     if array.ndim == 0:
         return float(array)
     array.setflags(write=False)
     return array
+
+
+def _as_array(value: Any, what: str, where: str, path: str) -> np.ndarray:
+    """Numbers as an array of floats; texts are read as numbers, since YAML takes 1e-3 for a text.
+
+    Raises:
+        InputError: something that is no number, or a truth value.
+    """
+    some = list(value) if isinstance(value, list | tuple) else [value]
+    remedy = f"expects {what}"
+    try:
+        if any(isinstance(v, bool) for v in some):
+            raise TypeError
+        if isinstance(value, str):
+            remedy += ", without a unit after it"
+            return np.array(float(value))
+        if isinstance(value, list | tuple):
+            value = [float(v) if isinstance(v, str) else v for v in value]
+        return np.array(value, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(where, path, value, remedy) from None
+
+
+def _has_shape(array: np.ndarray, value: Any, size: int) -> bool:
+    """Whether it is a vector of a size, a number where the size is 0, or an array of these."""
+    if size:
+        return array.ndim in (1, 2) and array.shape[-1] == size
+    return array.ndim <= 1 and not isinstance(value, list | tuple)
 
 
 class Checked:

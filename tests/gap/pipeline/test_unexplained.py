@@ -8,7 +8,7 @@ from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline.unexplained import Unexplained
 
 
-def unexplained(noises, after, remainder=1.0, cycles=((), ()), verdict="unknown"):
+def unexplained(noises, after, remainder=1.0, cycles=((), ()), verdict="unknown", odd=None):
     """Of channels with some noise over that of the references, and mean squares that are left."""
     channels = tuple(noisy_channel(name=name, residual="motion") for name in noises)
     scales = [noisy_scales(noise=noise) for noise in noises.values()]
@@ -35,7 +35,11 @@ def unexplained(noises, after, remainder=1.0, cycles=((), ()), verdict="unknown"
             remainder=remainder,
             verdict=verdict,
         ),
-        SimpleNamespace(after=np.array(after), noise=np.ones(len(noises))),
+        SimpleNamespace(
+            after=np.array(after),
+            noise=np.ones(len(noises)),
+            odd=np.zeros(len(noises), bool) if odd is None else np.array(odd),
+        ),
         InferenceRules(),
     )
 
@@ -71,6 +75,8 @@ def test_channels_that_are_left_larger_are_named_with_their_shares():
     assert [shape["location"] for shape in shapes] == ["ankle", "hip"]
     assert [shape["closed_beyond"] for shape in shapes] == pytest.approx([0.75, 0.25])
     assert unexplained({"hip": 1.0}, [2.0], remainder=0.0).shapes() == ()
+    beside = unexplained({"hip": 1.0, "ankle": 1.0}, [2.0, 4.0], odd=[False, True]).shapes()
+    assert [shape["location"] for shape in beside] == ["hip"]  # the ankle has a cause of its own
 
 
 def test_a_limit_cycle_counts_where_the_references_lack_it():

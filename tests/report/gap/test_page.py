@@ -141,7 +141,7 @@ def test_a_remainder_and_what_references_lack_stand_below_the_verdict(
     )
     text = written(tmp_path, told, signals)
     assert "The reference log monday differs from the others by Coulomb friction" in text
-    assert "18 % of the gap is left that no effect explains." in text
+    assert "18 % of the gap is left that no effect of the catalogue explains." in text
     assert "The reference logs already show what the model lacks: Coulomb friction" in text
 
 

@@ -192,7 +192,7 @@ def test_what_references_lack_and_what_remains_is_told():
     lines = diagnosis_text(diagnosis(lacks=lacking, remainder=0.25)).splitlines()
     assert "  model lacks torque_constant at hip: p 0.90; scale 0.85 (0.84 .. 0.86)" in lines
     assert lines[0].endswith(" in part")
-    assert "  remainder: 25 % of the gap, which no effect explains" in lines
+    assert "  remainder: 25 % of the gap, which no effect of the catalogue explains" in lines
     assert "lack" not in diagnosis_text(diagnosis(lacks=None))
 
 

@@ -94,7 +94,7 @@ class Search:
                 best = self._without_unlisted(current)
             if best is current:
                 break
-            self.show(f"causes so far: {len(best.candidates)}")
+            self.show(f"causes so far: {', '.join(_in_words(c) for c in best.candidates)}")
             current, smaller = best, self._each_removed(best)
             best = self._improved(smaller[:-1], current)
             if best is not current:
@@ -336,6 +336,11 @@ class Search:
         stack = Stack.of(causes, self.evidence.weight)
         crossing = Crossing.of(self.evidence.channels, stack.rows)
         return self.fits.at_scales(stack, crossing, scales).gain
+
+
+def _in_words(candidate: Candidate) -> str:
+    place = "all places" if candidate.location == EVERYWHERE else candidate.location
+    return f"{candidate.effect} at {place}{' (in all logs)' if candidate.standing else ''}"
 
 
 def _names_at_place(proposal: Proposal, current: Hypothesis) -> tuple[Name, ...]:
