@@ -8,11 +8,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 import yaml
 
 import hyperleg_design
 from hyperleg_design import cli
+from hyperleg_design.gap import effects
+from hyperleg_design.gap.effects.complete import check_complete
+from hyperleg_design.gap.playback.show import show
 
 ROOT = Path(hyperleg_design.__file__).resolve().parent.parent
 TUTORIALS = [
@@ -115,3 +119,19 @@ def test_pages_of_the_navigation_exist_and_have_content():
     assert linked == there | notebooks
     for page in there:
         assert len((ROOT / "docs" / page).read_text(encoding="utf-8").split()) >= 25, page
+
+
+def test_the_effect_that_a_page_adds_is_one(monkeypatch):
+    page = (ROOT / "docs" / "how-to" / "add_an_effect.md").read_text()
+    (code,) = [text for language, _, text in BLOCK.findall(page) if language == "python"]
+    names: dict[str, object] = {"__name__": "air_drag"}
+    exec(code, names)
+    check_complete(names["AirDrag"])
+    for catalogue in (effects.EFFECTS, effects.WEIGHED):
+        monkeypatch.setitem(catalogue, "air_drag", names["AirDrag"]())
+    shown = show("air_drag")
+    assert shown.residual_name == "motion"
+    # the residual of a simulation with its hooks is its trace, but for the noise of sensors
+    known = np.isfinite(shown.trace) & np.isfinite(shown.residual) & (shown.time > 0.5)
+    left = shown.residual[known] - shown.trace[known]
+    assert np.sqrt(np.mean(left**2)) < 0.2 * np.sqrt(np.mean(shown.residual[known] ** 2))
