@@ -132,7 +132,7 @@ def verdict_sentence(diagnosis: Entry) -> str:
         plural = len(hidden) > 1
         return (
             f"{joined(hidden)} {'ring or swing' if plural else 'rings or swings'} as in no "
-            "reference, and whatever else is wrong is lost in it."
+            "reference, so that other faults cannot be seen."
         )
     if verdict == "unknown" or not causes:
         return (
@@ -144,7 +144,8 @@ def verdict_sentence(diagnosis: Entry) -> str:
         alike = "; ".join(joined(group, "or") for group in sets)
         return f"Either {alike or phrase(causes)}: these logs cannot tell which."
     plural = len(together(causes)) > 1
-    return f"{capital(phrase(causes))} explain{'' if plural else 's'} the gap."
+    most = "most of " if diagnosis.get("remainder") else ""
+    return f"{capital(phrase(causes))} explain{'' if plural else 's'} {most}the gap."
 
 
 def phrase(causes: Sequence[Entry]) -> str:

@@ -74,6 +74,8 @@ def test_each_verdict_is_one_sentence() -> None:
     )
     everywhere = verdict_sentence(diagnosis("explained", FRICTION))
     assert everywhere == "Coulomb friction at a, b, c and d (torque 0.2 Nm) explains the gap."
+    rest = diagnosis("explained", FRICTION, remainder=0.2)
+    assert verdict_sentence(rest).endswith("(torque 0.2 Nm) explains most of the gap.")
     pair = [[{"effect": "payload", "location": "arm"}, {"effect": "imu_bias", "location": "gyro"}]]
     assert verdict_sentence(diagnosis("ambiguous", FRICTION[:1], equivalent=pair)) == (
         "Either payload at arm or IMU bias at gyro: these logs cannot tell which."
