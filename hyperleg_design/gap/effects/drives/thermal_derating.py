@@ -65,7 +65,8 @@ class ThermalDerating(MotorTorque):
         known = {m: log.column(f"motor_temperature/{m}") for m in logged}
         rise = {m: float(np.nanmax(values) - np.nanmin(values)) for m, values in known.items()}
         if not rise:
-            return Excitation(self.identifier, False, (), "no motor temperature")
+            why = "no motor temperature: a diagnosis models it from the torques, and may be wrong"
+            return Excitation(self.identifier, False, (), why)
         warm = tuple(m for m, value in rise.items() if value >= WARMING)
         needed = "" if warm else f"; {WARMING:.0f} K are needed"
         why = f"temperature changes by {max(rise.values()):.0f} K{needed}"
