@@ -8,8 +8,9 @@ little and keeps the channels independent of each other given the causes.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -295,6 +296,21 @@ def _set(
     return _Set(filtered_logs, samples, floors, columns, len(apart), steady, tested)
 
 
+class _Cell(NamedTuple):
+    """Samples of one session in one band."""
+
+    session: tuple[int, int]
+    """Set, and session of the set."""
+    band: tuple[int, int]
+    """Set, and band."""
+    number: float
+    """Independent numbers."""
+    places: np.ndarray
+    """Of its samples among all."""
+    whitened: np.ndarray
+    """Columns and residual over the noise `(columns + 1, samples)`."""
+
+
 def _channel(
     key: tuple[str, int], sets: Sequence[_Set], rules: InferenceRules
 ) -> tuple[Channel, float]:
@@ -302,54 +318,34 @@ def _channel(
     noise.
     """
     parts = [(logs, row) for logs in sets if (row := logs.row(key)) is not None]
-    discrepancies = [logs.shapes(key, rules.discrepancy.waves) for logs, _ in parts]
-    signals = sets[0].filtered_logs[0].signals
-    size = np.mean([square for _, square, _ in discrepancies], 0)
-    strength = float(np.mean([square for *_, square in discrepancies]))
+    present, moved = [logs for logs, _ in parts], 1.0
+    columns = _scaled_shapes(key, present, rules)
     if key[0] == "motion":
-        strength += float(dry_friction(signals)[key[1]]) ** 2
-    scale = rules.discrepancy.share * np.sqrt(strength / np.maximum(size, 1e-300))
-    scale[size <= 0] = 0.0
-    own_noise, moved = None, 1.0
-    if key[0] == "motion":
-        own_noise, moved = _placeholder(key, sets)
-    white, cells = [], []
-    for number, ((logs, row), (columns, *_)) in enumerate(zip(parts, discrepancies, strict=True)):
-        samples = logs.samples
-        own = np.flatnonzero(samples.row == row)
-        first = 0 if logs.tested else len(sets[0].samples.value)
-        whole = np.concatenate(
-            [
-                logs.errors[:, own],
-                columns[:, own] * scale[:, None],
-                *([] if own_noise is None else [own_noise[number][:, own]]),
-                samples.value[None, own],
-            ]
-        )
-        whole *= samples.weight[own]
-        session = samples.session[samples.part[own]]
-        band = samples.group_band[samples.group[own]]
-        for s, b in sorted(set(zip(session.tolist(), band.tolist(), strict=True))):
-            mine = (session == s) & (band == b)
-            white.append(whole[:, mine])
-            number_of = float(samples.share[own[mine]].sum())
-            cells.append(((number, s), (number, b), number_of, first + own[mine]))
-    sessions = sorted({cell[0] for cell in cells})
-    bands = sorted({cell[1] for cell in cells})
+        load_noise, moved = _load_noise(key, present)
+        columns = [np.concatenate(pair) for pair in zip(columns, load_noise, strict=True)]
+    cells = [
+        cell
+        for number, ((logs, row), own) in enumerate(zip(parts, columns, strict=True))
+        for cell in _cells(logs, row, own, number, 0 if logs.tested else len(sets[0].samples.value))
+    ]
+    sessions = sorted({cell.session for cell in cells})
+    bands = sorted({cell.band for cell in cells})
     known = sets[0].known
     steady = sets[0].steady if len(sessions) > 1 else known
-    white, known, steady = rotated(white, known, steady, rules.discrepancy.truncation)
+    white, known, steady = rotated(
+        [cell.whitened for cell in cells], known, steady, rules.discrepancy.truncation
+    )
     channel = Channel(
         residual=key[0],
         column=key[1],
         name=parts[0][0].samples.rows[parts[0][1]].name,
         products=np.array([cell @ cell.T for cell in white]),
-        number=np.array([cell[2] for cell in cells]),
-        session=np.array([sessions.index(cell[0]) for cell in cells]),
-        band=np.array([bands.index(cell[1]) for cell in cells]),
+        number=np.array([cell.number for cell in cells]),
+        session=np.array([sessions.index(cell.session) for cell in cells]),
+        band=np.array([bands.index(cell.band) for cell in cells]),
         frequency=np.array([b for _, b in bands]),
         tested=np.array([number == 0 for number, _ in sessions]),
-        places=tuple(cell[3] for cell in cells),
+        places=tuple(cell.places for cell in cells),
         whitened=tuple(white),
         steady=steady,
         known=known,
@@ -357,7 +353,39 @@ def _channel(
     return channel, moved
 
 
-def _placeholder(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarray], float]:
+def _scaled_shapes(
+    key: tuple[str, int], sets: Sequence[_Set], rules: InferenceRules
+) -> list[np.ndarray]:
+    """Columns of the discrepancy of each set, with the deviation that they have at scale 1
+    `(columns, S)`.
+    """
+    shaped = [logs.shapes(key, rules.discrepancy.waves) for logs in sets]
+    size = np.mean([square for _, square, _ in shaped], 0)
+    strength = float(np.mean([square for *_, square in shaped]))
+    if key[0] == "motion":
+        strength += float(dry_friction(sets[0].filtered_logs[0].signals)[key[1]]) ** 2
+    scale = rules.discrepancy.share * np.sqrt(strength / np.maximum(size, 1e-300))
+    scale[size <= 0] = 0.0
+    return [columns * scale[:, None] for columns, *_ in shaped]
+
+
+def _cells(logs: _Set, row: int, columns: np.ndarray, number: int, first: int) -> Iterator[_Cell]:
+    """Cells of one row of a set, which is the one of this `number` and whose samples begin at
+    `first` among all.
+    """
+    samples = logs.samples
+    own = np.flatnonzero(samples.row == row)
+    whole = np.concatenate([logs.errors[:, own], columns[:, own], samples.value[None, own]])
+    whole *= samples.weight[own]
+    session = samples.session[samples.part[own]]
+    band = samples.group_band[samples.group[own]]
+    for s, b in sorted(set(zip(session.tolist(), band.tolist(), strict=True))):
+        mine = (session == s) & (band == b)
+        numbers = float(samples.share[own[mine]].sum())
+        yield _Cell((number, s), (number, b), numbers, first + own[mine], whole[:, mine])
+
+
+def _load_noise(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarray], float]:
     """Columns of the part of the load that is noise or vibration in each band, over all sets
     `(columns, S)` each, and the share of the numbers under test in which the drives' torque is no
     noise.
