@@ -42,7 +42,7 @@ class Check:
     sampling: Sampling
     columns: tuple[Column, ...]
     findings: tuple[Finding, ...]
-    """Errors first."""
+    """What was found, errors first."""
     excitation: tuple[Excitation, ...]
     """Of each effect of the catalogue."""
 

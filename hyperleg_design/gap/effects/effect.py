@@ -42,7 +42,7 @@ class Effect(ABC):
 
     identifier: ClassVar[str]
     kind: ClassVar[str]
-    """One of `KINDS`."""
+    """Kind of place where it acts, one of `KINDS`."""
     summary: ClassVar[str]
     """One line for people."""
     parameters: ClassVar[tuple[Parameter, ...]]

@@ -22,7 +22,7 @@ class Excitation:
     """What a log can say of one effect."""
 
     effect: str
-    """Its identifier."""
+    """Identifier of the effect."""
     shown: bool
     """Whether this log can show it anywhere."""
     where: tuple[str, ...]

@@ -9,7 +9,7 @@ from __future__ import annotations
 FRICTION = frozenset(
     {"coulomb_friction", "viscous_friction", "stribeck_friction", "load_dependent_friction"}
 )
-"""Friction of joints."""
+"""Effects that are friction of joints."""
 INERTIAL = frozenset({"payload", "link_mass", "link_com"})
 """Masses and centres of mass of links."""
 LATE = frozenset({"command_delay", "actuator_bandwidth"})

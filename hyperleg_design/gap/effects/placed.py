@@ -13,7 +13,7 @@ class Hooks(Live):
     """Hooks at one joint or motor; constants of the alteration are attributes of the same name."""
 
     kind: ClassVar[str]
-    """`joint` or `motor`."""
+    """Where they act: `joint` or `motor`."""
     alteration: Placed
     place: int
     """Of the joint or motor in the machine."""

@@ -35,7 +35,7 @@ from hyperleg_design.writing import write_json, write_text
 RATE = 200.0
 """Of the targets [Hz]."""
 RATES = (50.0, 2000.0)
-"""Allowed [Hz]."""
+"""Lowest and highest sampling rate [Hz]."""
 FORMATS = ("csv", "parquet", "both")
 
 

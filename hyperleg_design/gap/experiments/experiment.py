@@ -14,7 +14,7 @@ from typing import Any
 from hyperleg_design.gap.effects import EFFECTS
 
 Cause = tuple[str, str]
-"""Effect and location."""
+"""Effect and location of a cause."""
 
 
 @dataclass(frozen=True)

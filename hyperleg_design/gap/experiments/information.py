@@ -45,7 +45,7 @@ REST = 1e-7
 """Least share of the square of a column that other columns leave [-]; derived: below it, rounding.
 """
 Place = tuple[str, str]
-"""Effect and location."""
+"""Effect and location of a cause."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,7 +37,7 @@ CHIRP, FOURIER, SWING = 25.0, 25.0, 4.0
 SWEEPS = ((0.4, 1.2, 3.0), (0.3, 0.6, 1.0))
 """Frequencies [Hz], and amplitudes over the largest allowed."""
 RAMPS = (0.08, 0.3)
-"""Speeds [rad/s]."""
+"""Speeds of the slow ramps [rad/s]."""
 POSTURES = 6
 STROKES = (0.02, 0.08)
 """Sizes of quick strokes [rad]."""
@@ -62,7 +62,7 @@ class Motion:
     name: str
     purpose: str
     time: np.ndarray
-    """`(t,)` [s]."""
+    """Times of the targets `(t,)` [s]."""
     target: np.ndarray
     """Position targets `(t, n)` [rad]; NaN while the drives are off."""
     position: np.ndarray

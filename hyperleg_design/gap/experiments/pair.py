@@ -21,7 +21,7 @@ class Pair:
     first: tuple[str, str]
     second: tuple[str, str]
     by: str
-    """What separates them."""
+    """What separates the two effects."""
 
 
 def apart(gram: np.ndarray, blocks: Blocks, pair: Pair) -> float:

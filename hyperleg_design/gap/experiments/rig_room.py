@@ -55,9 +55,9 @@ class Room:
     high: np.ndarray
     """Range that may be used [rad]."""
     speed: np.ndarray
-    """[rad/s]"""
+    """Largest speed of each joint [rad/s]."""
     acceleration: np.ndarray
-    """[rad/s^2]"""
+    """Largest acceleration of each joint [rad/s^2]."""
 
     @property
     def reach(self) -> np.ndarray:

@@ -45,7 +45,7 @@ class Evidence:
     tests: Samples
     """Of the logs under test: the first ones of `samples`."""
     signals: tuple[Signals, ...]
-    """Under test."""
+    """Conditioned logs under test."""
     references: tuple[Signals, ...]
     usual: Mapping[tuple[str, str, int], float]
     """Deviation of the usual calibration error of an effect's parameter at a place."""
@@ -300,11 +300,11 @@ class _Cell(NamedTuple):
     """Samples of one session in one band."""
 
     session: tuple[int, int]
-    """Set, and session of the set."""
+    """Number of the set, and session of the set."""
     band: tuple[int, int]
-    """Set, and band."""
+    """Number of the set, and band."""
     number: float
-    """Independent numbers."""
+    """How many independent numbers they count for [-]."""
     places: np.ndarray
     """Of its samples among all."""
     whitened: np.ndarray

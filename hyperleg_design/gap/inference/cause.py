@@ -28,7 +28,7 @@ class Cause:
     usual: np.ndarray
     low: np.ndarray
     high: np.ndarray
-    """Bounds `(k,)` each."""
+    """Nulls, usual sizes, least and largest values of the parameters `(k,)` each."""
     shape: np.ndarray
     """Parameters that only shape `(k,)` of bool."""
     compact: csr_array

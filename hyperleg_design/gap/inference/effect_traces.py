@@ -50,7 +50,7 @@ class Starts:
     """Where searches for the values of a nonlinear effect at a place begin."""
 
     values: np.ndarray
-    """`(s, k)`"""
+    """Values of the parameters at each start `(s, k)`."""
     compact: csr_array
     """`columns`, without their zeros."""
     weights: np.ndarray | None = None

@@ -37,7 +37,7 @@ class Posterior:
 
     verdict: str
     hypothesis: Hypothesis
-    """The most probable."""
+    """The most probable hypothesis."""
     order: tuple[int, ...]
     """Its candidates that are faults and no `standing` ones, the one that explains most first."""
     standing: tuple[int, ...]

@@ -33,7 +33,7 @@ SHAKEN = 0.005
 """Noise that is added to a torque, over the torque that its motor is made for [-] (assumed, as that
 of current sensors)."""
 SEED = 11
-"""Of that noise."""
+"""Seed of the noise that is added."""
 SMALLEST = 0.05
 """Usual sizes at which what a trace takes along is measured, at least [-]: of nothing it is 0
 (assumed)."""

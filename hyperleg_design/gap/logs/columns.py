@@ -43,7 +43,7 @@ UNITS = {
     "base_velocity": "m/s",
     CONTACT: "N",
 }
-"""By signal."""
+"""Unit of each signal."""
 NEARLY = 0.85
 """Similarity from which a name is taken for a misspelt signal [-] (difflib's ratio)."""
 

@@ -57,7 +57,7 @@ class Log:
 
     name: str
     time: np.ndarray
-    """`(t,)` [s]."""
+    """Times of the rows `(t,)` [s]."""
     signals: Mapping[str, np.ndarray]
     """By column, `(t,)` each; units in `UNITS`; NaN where unknown."""
     metadata: Metadata = field(default_factory=Metadata)

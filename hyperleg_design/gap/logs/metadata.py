@@ -43,7 +43,7 @@ class Metadata:
     overrides: tuple[str, ...] = ()
     """Of the design, `PATH=VALUE` each."""
     base: str = ""
-    """One of `BASES`."""
+    """How the base is held, one of `BASES`."""
     gravity: tuple[float, float, float] = STANDARD_GRAVITY
     """In the world, z up, unless the base stands tilted [m/s^2]."""
     gains: Mapping[str, tuple[float, float]] = field(default_factory=dict)
@@ -55,7 +55,7 @@ class Metadata:
     stall torque [Nm] and no-load speed [rad/s] at it. Their stiffness and their limits follow the
     logged voltage of the battery."""
     targets: str = ""
-    """One of `TARGETS`."""
+    """What targets do between rows, one of `TARGETS`."""
     torque_sensors: tuple[str, ...] = ()
     """Joints whose `joint_torque` a sensor between gear and link measures, so that friction and
     rotors act before it."""
@@ -66,9 +66,9 @@ class Metadata:
     """Logs of one session share one assembly, calibration and temperature; empty, a session of its
     own."""
     role: str = "test"
-    """One of `ROLES`."""
+    """What the log is for, one of `ROLES`."""
     notes: str = ""
-    """For people."""
+    """Free text for people."""
     remarks: tuple[str, ...] = ()
     """What the source lacks and what a reader changed; the answer is weaker by these."""
     extra: Mapping[str, Any] = field(default_factory=dict)

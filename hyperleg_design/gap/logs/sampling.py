@@ -50,7 +50,7 @@ class Column:
     """What the values of one signal of a log look like: their own rate, range, steps and noise."""
 
     column: str
-    """Name, `kind/place`."""
+    """Name of the column, `kind/place`."""
     rate: float
     """At which its value is given anew [Hz]."""
     missing: float
@@ -58,7 +58,7 @@ class Column:
     low: float
     """Smallest value, in the unit of the column."""
     high: float
-    """Largest value."""
+    """Largest value of the column."""
     quantum: float
     """Smallest step between values; 0 where there is none."""
     noise: float
@@ -70,7 +70,7 @@ class Column:
     held: int
     """Rows over which each value is kept."""
     unit: str = ""
-    """Of its values."""
+    """Unit of the values."""
 
 
 def sampling_of(time: np.ndarray) -> Sampling:

@@ -47,7 +47,7 @@ class Mechanism:
     base_inertial: np.ndarray
     """The same of a floating base, in its own frame `(10,)`."""
     links: tuple[str, ...]
-    """That can move."""
+    """Names of the links that can move."""
     link_joint: np.ndarray
     """Joint that carries each link, `BASE` for the floating base and what is fixed to it `(L,)`."""
     link_rotation: np.ndarray

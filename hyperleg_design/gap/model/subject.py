@@ -31,13 +31,13 @@ class Pad:
 
     name: str
     foot: int
-    """Of `Subject.feet`."""
+    """Place of its foot in `Subject.feet`."""
     link: int
-    """Of `Mechanism.links`."""
+    """Place of its link in `Mechanism.links`."""
     position: tuple[float, float, float]
     """Of its centre in the link's frame [m]."""
     radius: float
-    """[m]"""
+    """Radius of the pad [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +52,7 @@ class Subject:
     design: RobotDesign | None
     """Where it is one of ours."""
     base: str
-    """`fixed` or `floating`."""
+    """How the base is held, `fixed` or `floating`."""
     gravity: np.ndarray
     """In the world `(3,)` [m/s^2]."""
     joints: tuple[str, ...]
@@ -66,7 +66,7 @@ class Subject:
     feet: tuple[str, ...]
     pads: tuple[Pad, ...]
     joint_from_motor: np.ndarray
-    """`(n, m)` [-]."""
+    """Joint torque over motor torque `(n, m)` [-]."""
     gains: np.ndarray
     """Stiffness and damping of the joint controllers, NaN where unknown `(n, 2)` [Nm/rad,
     Nms/rad]."""
@@ -85,7 +85,7 @@ class Subject:
     """Nominal friction of the joints `(n,)` [Nm, Nms/rad]: coulomb tanh(v / friction_speed) +
     viscous v."""
     friction_speed: np.ndarray
-    """`(n,)` [rad/s]."""
+    """Speed over which Coulomb friction turns over `(n,)` [rad/s]."""
     spring: np.ndarray
     spring_rest: np.ndarray
     """Springs of the file at the joints: stiffness and position at rest `(n,)` [Nm/rad, rad]."""

@@ -23,7 +23,7 @@ class Tendon:
     """One fixed tendon over the joints of a robot."""
 
     index: int
-    """In the file."""
+    """Index of the tendon in the file."""
     name: str
     """In the file, or `tendon_INDEX`."""
     coefficients: np.ndarray

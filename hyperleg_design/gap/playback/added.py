@@ -50,7 +50,7 @@ class Replayed:
 
     joint: str
     unit: str
-    """Of the error."""
+    """Unit of the error."""
     before: float
     after: float
     windows: int

@@ -31,7 +31,7 @@ class Evidence:
     rows: tuple[str, ...]
     """Joints, motors, or parts of the base or the feet."""
     time: np.ndarray
-    """`(t,)` [s]."""
+    """Times of the samples `(t,)` [s]."""
     before: np.ndarray
     """Residual of the nominal model, less what stands in the references, too `(t, r)`; NaN where
     it cannot be told, and where a joint may stick."""

@@ -38,7 +38,7 @@ class Sheet:
     signal: str
     kind: str
     units: tuple[str, ...]
-    """By place."""
+    """Unit of the gap at each place."""
     names: tuple[str, ...]
     residual: np.ndarray
     """`(t, k)`, NaN where unknown."""

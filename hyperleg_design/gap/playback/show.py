@@ -50,17 +50,17 @@ class Shown:
     robot: str
     location: str
     values: np.ndarray
-    """Of the parameters."""
+    """Values of the effect's parameters."""
     units: tuple[str, ...]
     """Of the parameters at this place."""
     time: np.ndarray
-    """`(t,)` [s]."""
+    """Times of the samples `(t,)` [s]."""
     residual_name: str
     """In which its trace is largest; empty where it leaves none."""
     row: str
     """Joint, motor, axis of the base or foot with the largest trace."""
     unit: str
-    """Of the trace."""
+    """Unit of the trace and the residual."""
     trace: np.ndarray
     """`(t,)`; NaN where unknown."""
     residual: np.ndarray
@@ -74,7 +74,7 @@ class Shown:
     torque: np.ndarray
     """Of that joint in the log with the effect `(t,)` [rad, rad/s, Nm]."""
     target: np.ndarray
-    """`(t,)` [rad]."""
+    """Position target of the joint `(t,)` [rad]."""
     before: np.ndarray
     after: np.ndarray
     """Position that the simulation reaches without and with the effect, as the sensor tells `(t,)`

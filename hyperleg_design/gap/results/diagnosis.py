@@ -48,7 +48,7 @@ class Named:
     location: str
     """Joint, motor, link, foot or sensor where it acts."""
     probability: float
-    """Posterior probability [-]."""
+    """Posterior probability that it acts [-]."""
     closed: float
     """Share of the excess gap that it closes on held-out data, at the residuals in which it shows;
     of several causes, the share that would stay open without it [-]."""
@@ -123,7 +123,7 @@ class Diagnosis:
     """The answer of a diagnosis: verdict, gap, causes, rivals, and what to do next."""
 
     verdict: str
-    """One of `VERDICTS`."""
+    """The answer in a word, one of `VERDICTS`."""
     gap: Shrinkage
     """Size of the gap before and after the causes are added."""
     where: tuple[Place, ...]

@@ -15,7 +15,7 @@ class Finding:
     """One fact about a log."""
 
     severity: str
-    """One of `SEVERITIES`."""
+    """How bad it is, one of `SEVERITIES`."""
     signal: str
     """Column, or empty for the whole log."""
     what: str

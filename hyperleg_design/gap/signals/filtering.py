@@ -82,7 +82,7 @@ class Band:
     index: int
     low: float
     high: float
-    """[Hz]"""
+    """Lower and upper end of the band [Hz]."""
     bins: slice
     gain: np.ndarray
     count: int
@@ -90,7 +90,7 @@ class Band:
     length: int
     """Ticks of the whole transform."""
     used: np.ndarray
-    """Samples that count."""
+    """Which samples count."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,9 +104,9 @@ class FilteredLog:
     mask: np.ndarray
     """Known ticks `(rows, t)`."""
     bands: tuple[tuple[Band, ...], ...]
-    """Of each row."""
+    """Bands of each row."""
     length: int
-    """Of the transforms."""
+    """Number of ticks of the Fourier transforms."""
 
     def sample(self, row: int, values: np.ndarray) -> np.ndarray:
         """Samples of one row of a residual or of traces.

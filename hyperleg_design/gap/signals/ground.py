@@ -67,9 +67,9 @@ class Footing:
     fall: np.ndarray
     """Rate of that `(t, p)` [m/s^2]."""
     friction: float
-    """mu, nominal."""
+    """Nominal friction coefficient mu of the ground [-]."""
     law: Law
-    """Of its pads."""
+    """Contact law of its pads."""
     judged: np.ndarray
     """Ticks by whose mean force the floor is found `(t,)`."""
     settled: np.ndarray

@@ -24,9 +24,9 @@ class Law:
     """How the model's ground bears p pads."""
 
     spring: np.ndarray
-    """k' [1/s^2], `(p,)`."""
+    """Stiffness over mass k' of each pad `(p,)` [1/s^2]."""
     damper: np.ndarray
-    """b' [1/s], `(p,)`."""
+    """Damping over mass b' of each pad `(p,)` [1/s]."""
     weight: np.ndarray
     """Inverse of the inertia that a pad stands for [1/kg], `(p,)`."""
     impedance: np.ndarray

@@ -106,7 +106,7 @@ class Signals:
     step: float
     """Of the time base [s]."""
     time: np.ndarray
-    """`(t,)` [s]."""
+    """Even times of the ticks `(t,)` [s]."""
     position: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
@@ -133,9 +133,9 @@ class Signals:
     """Joint torque that the logged motion needs: inverse dynamics, rotors, nominal friction,
     contact forces `(t, n)` [Nm]."""
     temperature: np.ndarray | None
-    """`(t, m)` [degC]."""
+    """Logged temperature of the motors `(t, m)` [degC]."""
     voltage: np.ndarray | None
-    """Battery `(t,)` [V]."""
+    """Logged voltage of the battery `(t,)` [V]."""
     contact: np.ndarray | None
     """Force of the ground on each foot, world frame `(t, f, 3)` [N]."""
     valid: np.ndarray

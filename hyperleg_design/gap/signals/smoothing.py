@@ -60,7 +60,7 @@ class Smooth:
     second: np.ndarray
     """`(t, n)` each: value, first and second derivative."""
     crossover: np.ndarray
-    """`(n,)` [rad/s]."""
+    """Crossover frequency of the smoother of each joint `(n,)` [rad/s]."""
     level: np.ndarray
     """Standard deviation of the samples' noise `(n,)`."""
 

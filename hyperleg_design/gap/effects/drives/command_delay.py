@@ -228,4 +228,4 @@ class LateCommand(Alteration):
     delay: Any
     """Of commands, `()` or `(n,)` [s]."""
     target_delay: Any = 0.0
-    """Of targets, likewise."""
+    """Of the targets alone, `()` or `(n,)` [s]."""

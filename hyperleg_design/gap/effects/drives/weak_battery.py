@@ -100,4 +100,4 @@ class WeakBattery(Alteration):
     """Of each motor: torque that it is made for [Nm], and speed over that of the joint that it
     moves most `(m,)`."""
     reference_power: float
-    """[W]"""
+    """Power at which a usual battery lacks its usual sag, see `reference_power` [W]."""

@@ -120,4 +120,4 @@ class JointFriction(Alteration):
     """Of the torque that the motors give at the joint, less what turns their rotors; `()` or `(n,)`
     each [Nm, Nms/rad, Nm, rad/s, -]."""
     width: float = WIDTH
-    """[rad/s]"""
+    """Speed over which the sign of the velocity is softened [rad/s]."""

@@ -44,7 +44,7 @@ class Channel:
     products: np.ndarray
     """Of the k discrepancy columns and the residual `(cells, k + 1, k + 1)`."""
     number: np.ndarray
-    """Independent numbers `(cells,)`."""
+    """Independent numbers that each cell counts for `(cells,)`."""
     session: np.ndarray
     """Of each cell `(cells,)`, from 0."""
     band: np.ndarray

@@ -17,7 +17,7 @@ class Crossing:
     """Products of m columns with each channel and among themselves."""
 
     count: int
-    """m."""
+    """Number m of parameters of all causes."""
     shown: tuple[np.ndarray, ...]
     """Of each channel, the columns that are anything there `(some,)`."""
     cross: tuple[np.ndarray, ...]

@@ -14,4 +14,4 @@ class Residual:
     cross: np.ndarray
     """With the discrepancy columns `(cells, k)`."""
     square: np.ndarray
-    """With itself `(cells,)`."""
+    """Products of the residual with itself `(cells,)`."""

@@ -59,7 +59,7 @@ class _Sliding:
     """Ratio of the sum of the force's parts along a pyramid's edges to the load: what is the same
     in all directions there."""
     time: float
-    """[s]"""
+    """For which the foot slides [s]."""
     loaded: np.ndarray
     """Ratio at all loaded ticks `(n,)`."""
 
@@ -163,12 +163,12 @@ class Contacts:
     ratio: np.ndarray
     """Of tangential force to load."""
     along_edges: np.ndarray
-    """As of `_Sliding`."""
+    """Parts of the force along a pyramid's edges over the load, as in `_Sliding`."""
     against: np.ndarray
     """Speed against the tangential force [m/s]."""
     slides: np.ndarray
     loaded: np.ndarray
-    """`(t, c)` each."""
+    """Whether each contact slides, and whether it bears load `(t, c)` each."""
 
 
 def contacts(signals: Signals, place: int) -> Contacts | None:

@@ -13,13 +13,13 @@ class Underfoot:
     """One foot, and how its ground differs from the nominal one."""
 
     effect: str
-    """Of the catalogue."""
+    """Identifier of the effect in the catalogue."""
     foot: str
     parameters: Mapping[str, Value]
     shape: str
     """Name of the finding: that the foot slides, or that it sinks."""
     sentence: str
-    """For people."""
+    """What was seen, in a sentence for people."""
     weight: float
     """Of this foot among others: seconds that it slides, or number of its contacts."""
     size: float

@@ -41,7 +41,7 @@ class Candidate:
 
     effect: str
     location: str
-    """Place, or `EVERYWHERE`."""
+    """Name of the place, or `EVERYWHERE`."""
     causes: tuple[Cause, ...]
 
     @property
@@ -63,13 +63,13 @@ class Hypothesis:
     theta: np.ndarray
     """Parameters of all causes, in usual sizes from their nulls `(k,)`."""
     covariance: np.ndarray
-    """`(k, k)`"""
+    """Posterior covariance of `theta` `(k, k)`."""
     scales: tuple[Scales, ...]
-    """By channel."""
+    """Fitted noise and discrepancy of each channel."""
     log_evidence: float
     """Over that of nothing wrong [nat]."""
     log_prior: float
-    """[nat]"""
+    """Log prior probability of the causes and their sizes [nat]."""
 
     @property
     def score(self) -> float:

@@ -36,9 +36,9 @@ class Proposal:
     standing: bool
     variant: int
     gain: float
-    """[nat]"""
+    """Log evidence that the cause is predicted to gain [nat]."""
     values: tuple[float, ...] = ()
-    """Of the start."""
+    """Values of its parameters at the start of a fit."""
 
     @property
     def name(self) -> Name:

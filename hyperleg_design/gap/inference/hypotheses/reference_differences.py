@@ -36,12 +36,12 @@ class Difference:
     reference: int
     """Place among the references."""
     log: str
-    """Its name."""
+    """Name of the reference log."""
     cause: Cause
     values: np.ndarray
     """Of the effect's parameters."""
     deviation: np.ndarray
-    """Their standard deviations."""
+    """Standard deviations of the values."""
     odds: float
     """Log posterior odds of the best hypothesis with it over the best without [nat]."""
 

@@ -35,7 +35,7 @@ class Servo:
     torque_constant: float
     """kt, at the output [Nm/A]."""
     resistance: float
-    """R [ohm]."""
+    """Resistance R of the winding [ohm]."""
     error_gain: float
     """Duty a unit of firmware gain and radian of error [1/rad]."""
     full_duty: float

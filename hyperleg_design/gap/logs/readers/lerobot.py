@@ -41,7 +41,7 @@ SIGNALS = {
     "observation.velocity": "velocity",
     "observation.effort": "joint_torque",
 }
-"""Signal by feature."""
+"""Signal of the log by feature of the dataset."""
 LARGEST_ANGLE = 4 * math.pi
 """Positions beyond are not radians."""
 
