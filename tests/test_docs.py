@@ -25,6 +25,8 @@ TUTORIALS = [
     ROOT / "docs" / "how-to" / "add_a_robot.md",
     ROOT / "docs" / "how-to" / "look_at_a_robot.md",
 ]
+LONG = ("train_and_evaluate", "look_at_a_robot")
+"""Pages that take longest, which run among slow tests."""
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
 AS_EXACT = 0.05
 """Share by which fitted numbers may differ between machines."""
@@ -54,10 +56,7 @@ def test_printed_lines_are_compared_with_little_tolerance():
 
 @pytest.mark.parametrize(
     "page",
-    [
-        pytest.param(page, marks=pytest.mark.slow if page.stem == "train_and_evaluate" else ())
-        for page in TUTORIALS
-    ],
+    [pytest.param(page, marks=pytest.mark.slow if page.stem in LONG else ()) for page in TUTORIALS],
     ids=lambda page: page.stem,
 )
 def test_a_tutorial_runs_as_it_stands(page, tmp_path, monkeypatch, capsys):

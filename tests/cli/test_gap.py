@@ -25,6 +25,7 @@ def test_gap_lists_its_effects(capsys):
     assert run(capsys, "gap", "effects")[1].startswith("actuator_bandwidth")
 
 
+@pytest.mark.slow
 def test_gap_show_draws_a_figure(capsys, tmp_path):
     code, out, _ = run(
         capsys,

@@ -21,6 +21,7 @@ def test_surroundings_keep_what_is_there_and_set_threads_and_malloc(
     assert "MALLOC_ARENA_MAX" not in os.environ or os.environ["MALLOC_ARENA_MAX"] == "2"
 
 
+@pytest.mark.slow
 def test_errors_come_out_as_one_line_with_their_own_status(tmp_path: Path) -> None:
     pytest.importorskip("torch")
     pytest.importorskip("rsl_rl")

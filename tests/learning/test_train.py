@@ -260,6 +260,7 @@ SPREAD = DesignSpread(
 )
 
 
+@pytest.mark.slow
 def test_a_conditioned_training_resumes_bit_for_bit(tiny: Preset, tmp_path: Path) -> None:
     assert train("walk", "toe", 7, tiny, tmp_path / "straight", designs=SPREAD)
     assert not train("walk", "toe", 7, tiny, tmp_path / "parts", designs=SPREAD, iterations=3)

@@ -129,7 +129,9 @@ SHORT = {
 }
 
 
-@pytest.mark.parametrize("kind", list(SHORT))
+@pytest.mark.parametrize(
+    "kind", [pytest.param(k, marks=pytest.mark.slow if k == "t_test" else ()) for k in SHORT]
+)
 def test_all_that_evaluate_prints_is_a_column_and_an_objective(kind, tmp_path):
     """The same trials give the same bits."""
     policies = [p.path for p in policies_for(kind, load_robot("toe"), 1)]

@@ -36,6 +36,7 @@ def test_a_torque_that_no_effect_has_is_unknown(robot_files, references):
     assert result.residual_shape
 
 
+@pytest.mark.slow
 def test_friction_of_two_kinds_at_one_joint_is_named_and_no_torque_that_no_effect_has(robot_files):
     result = diagnosed.diagnosis(robot_files, "rubbing", references=(2, 3))
     assert result.verdict == "explained"

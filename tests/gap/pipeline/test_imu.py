@@ -89,6 +89,7 @@ def told(flyer, log, *references):
     return diagnose(flyer, [log], reference=references, threads=1)
 
 
+@pytest.mark.slow
 def test_a_good_sensor_has_no_error(flyer):
     assert told(flyer, flown(5)).verdict == "none"
     assert told(flyer, flown(5, (0.002, 0, 0), (0.03, 0, 0.03)), flown(1)).verdict == "none"

@@ -90,6 +90,7 @@ def sizes(causes, effect):
     }
 
 
+@pytest.mark.slow
 def test_friction_that_is_all_of_the_torque_is_friction(model, healthy):
     """A rotor of the shoulder cannot be told from masses, as the arm bears no weight."""
     found = diagnose(model, healthy)

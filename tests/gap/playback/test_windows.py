@@ -20,6 +20,7 @@ def rms(values):
     return np.sqrt(np.nanmean(values**2, (0, 1, 2)))
 
 
+@pytest.mark.slow
 def test_closed_loop_replay_of_the_whole_log(signals):
     one = signals["arm"]
     assert best_input(one) == "target"

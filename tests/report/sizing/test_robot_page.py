@@ -17,7 +17,15 @@ def quick(monkeypatch):
     monkeypatch.setattr(robot_page.picture, "render", lambda scene, path: path.write_bytes(b"png"))
 
 
-@pytest.mark.parametrize("name", ["hyperleg", "toe_removed", "mini_cheetah", "parallel_ankle"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "hyperleg",
+        "toe_removed",
+        "mini_cheetah",
+        pytest.param("parallel_ankle", marks=pytest.mark.slow),
+    ],
+)
 def test_a_page_states_the_analysis_of_any_robot(name, tmp_path):
     design = load_robot(name)
     page = write_robot_page(design, tmp_path / "page")

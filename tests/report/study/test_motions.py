@@ -22,6 +22,7 @@ def context_of(design, folder):
     return Context(design, variants(design), folder)
 
 
+@pytest.mark.slow
 def test_the_weak_toe_is_told_from_its_numbers(tmp_path):
     made = study_motion.capability(context_of(load_design("hyperleg"), tmp_path))
     rows = json.loads((tmp_path / "capability.json").read_text())

@@ -4,6 +4,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
+
 from hyperleg_design.errors import InputError
 from hyperleg_design.report.page import Explorer, Missing
 from hyperleg_design.report.study import walked
@@ -18,6 +20,7 @@ class Context:
     policies: Path | None = None
 
 
+@pytest.mark.slow
 def test_committed_walks_are_shown_and_a_sample_is_run_again(tmp_path):
     section = walked.walked(Context(tmp_path))
     content = section.section.content

@@ -87,6 +87,7 @@ def test_of_a_single_policy_all_trials_are_reported(seed, count):
     pd.testing.assert_frame_equal(reported_trials(trials), trials)
 
 
+@pytest.mark.slow
 def test_equal_policies_are_reported_without_flattery():
     """Of equally good policies, the lowest mean of all trials is too low; that of reported trials
     is right.

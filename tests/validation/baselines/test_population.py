@@ -1,14 +1,17 @@
 import numpy as np
+import pytest
 
 from hyperleg_design.gap.playback.windows import whole_log
 from hyperleg_design.validation.baselines.population import predicted, squared_error
 
 
+@pytest.mark.slow
 def test_truth_closes_the_gap(rig):
     nothing = np.zeros(rig.drives.count)
     assert rig.held_out(rig.truth) < 0.2 * rig.held_out(nothing)
 
 
+@pytest.mark.slow
 def test_rows_of_a_population_do_not_touch_each_other(rig):
     one = rig.signals[0]
     several = np.stack([np.zeros(rig.drives.count), rig.truth, 0.3 * rig.drives.high])

@@ -30,6 +30,7 @@ def trial_of(rig, folder):
     (folder / "seal.json").write_text(json.dumps(seal))
 
 
+@pytest.mark.slow
 def test_table_holds_gap_cause_and_time_and_leaves_the_key_alone(rig, tmp_path):
     trial_of(rig, tmp_path)
     found = table.baselines_table(tmp_path, methods=("diagnosis", "own"))

@@ -35,6 +35,7 @@ def breaks_down(robot, logs, reference, *, threads):
     raise ValueError("out of order")
 
 
+@pytest.mark.slow
 def test_cases_hold_logs_and_no_truth(trial):
     truths = open_key(trial)
     assert [t["case"] for t in truths] == ["000", "001"]
@@ -52,12 +53,14 @@ def test_cases_hold_logs_and_no_truth(trial):
     assert not (trial / ".making").exists()
 
 
+@pytest.mark.slow
 def test_effects_show_about_as_planned(trial):
     for truth in open_key(trial):
         for wrong in truth["wrongs"]:
             assert 0.2 < wrong["multiple"] / wrong["wanted"] < 5.0
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_the_same_seed_makes_the_same_trial(trial, tmp_path):
     again = make_trial(2, SEED, tmp_path / "again", plants=("rig",), duration=SHORT, workers=2)
@@ -77,6 +80,7 @@ def test_a_finished_trial_is_not_made_again_and_another_is_refused(trial):
         make_trial(3, SEED, trial, plants=("rig",), duration=SHORT)
 
 
+@pytest.mark.slow
 def test_diagnoses_go_on_where_they_stopped(trial):
     assert diagnose_trial(trial, diagnose=knows_nothing) == 2
     (trial / "diagnoses" / "001" / "seconds.json").unlink()

@@ -29,7 +29,10 @@ def of(log, kind, names=JOINTS):
     return np.stack([log.signals[f"{kind}/{name}"] for name in names], 1)
 
 
-@pytest.mark.parametrize("motion", list(MOTIONS))
+@pytest.mark.parametrize(
+    "motion",
+    [pytest.param(m, marks=pytest.mark.slow if i else ()) for i, m in enumerate(MOTIONS)],
+)
 @pytest.mark.parametrize("drive", DRIVES)
 def test_a_healthy_crane_follows_every_motion_within_its_drives(motion, drive):
     log = run(motion=motion, drive=drive)

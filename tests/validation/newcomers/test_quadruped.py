@@ -38,7 +38,10 @@ def healthy():
     return run()
 
 
-@pytest.mark.parametrize("motion", list(MOTIONS))
+@pytest.mark.parametrize(
+    "motion",
+    [pytest.param(m, marks=pytest.mark.slow if i else ()) for i, m in enumerate(MOTIONS)],
+)
 def test_a_healthy_quadruped_stays_on_its_feet_within_its_drives(motion):
     log = run(motion=motion, duration=4.0)
     assert np.diff(log.time) == pytest.approx(0.005)
