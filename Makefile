@@ -34,8 +34,7 @@ test test-all study: export PYTHONDONTWRITEBYTECODE =
 test: $(VENV)/.learning  ## All tests but the slow ones, style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+	$(BIN)/mypy & types=$$!; NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict && wait $$types
 	$(BIN)/python -m pytest -m "not slow" -n 2 --dist worksteal
 
 test-all: $(VENV)/.learning  ## The slow ones too
