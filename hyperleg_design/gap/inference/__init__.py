@@ -12,7 +12,7 @@ Stages in the order in which a diagnosis passes them. Sections are those of
 | predict what usual calibration errors leave | `nuisance`, `nuisance_traces` | 3 |
 | fit effects that no answer names | `unlisted` | 4 |
 | compute the likelihood of a residual channel, with its scales | `channels/` | 5 |
-| make channels of logs | `assembly` | 5 |
+| make channels of logs | `log_set`, `assembly` | 5 |
 | correct it for noise that causes scale | `endogenous` (torques), `shrinking` (belts), `smoothing` (slow drives) | details |
 | set the prior of a set of causes | `hypotheses/cause_prior` | 6 |
 | fit the causes of a set, and compute its evidence | `hypotheses/`: `hypothesis`, `hypothesis_fit`, `bounded_least_squares`, `limited_scales` | 6 |

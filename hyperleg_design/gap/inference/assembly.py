@@ -16,18 +16,18 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects import WEIGHED
-from hyperleg_design.gap.inference import noise_model, nuisance, nuisance_traces
+from hyperleg_design.gap.inference import noise_model, nuisance
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.channel import Channel
-from hyperleg_design.gap.inference.channels.discrepancy import MOTORS, load, shapes
+from hyperleg_design.gap.inference.channels.discrepancy import MOTORS, load
 from hyperleg_design.gap.inference.channels.rotation import rotated
 from hyperleg_design.gap.inference.endogenous import Factor
+from hyperleg_design.gap.inference.log_set import LogSet, log_set
 from hyperleg_design.gap.inference.rules import InferenceRules
-from hyperleg_design.gap.inference.samples import SLOWEST_BANDS, Samples, gather
+from hyperleg_design.gap.inference.samples import Samples, gather
 from hyperleg_design.gap.inference.zeros import Zeros
-from hyperleg_design.gap.signals import filtering, resting
 from hyperleg_design.gap.signals.channels import applied
-from hyperleg_design.gap.signals.filtering import FilteredLog, place_of
+from hyperleg_design.gap.signals.filtering import place_of
 from hyperleg_design.gap.signals.signals import OF_SENSORS, Signals
 from hyperleg_design.gap.signals.sliding import dry_friction, viscous_friction
 
@@ -140,68 +140,6 @@ class Evidence:
         return self.samples.weight
 
 
-@dataclass(frozen=True, eq=False)
-class _Set:
-    """Logs under test, or references."""
-
-    filtered_logs: list[FilteredLog]
-    samples: Samples
-    floors: list[list[np.ndarray]]
-    """Expected noise of each log and row."""
-    errors: np.ndarray
-    """Columns of the nuisance parameters, steady ones first `(p, S)`."""
-    known: int
-    """Number of columns, the first ones, whose deviation is known."""
-    steady: int
-    """Number of columns of parameters that are the same in all sessions, those included."""
-    tested: bool
-
-    def row(self, key: tuple[str, int]) -> int | None:
-        """Look up a channel among the samples' rows.
-
-        Args:
-            key: name and column of its residual.
-
-        Returns:
-            Its index; None where no log of this set has the channel.
-        """
-        return place_of(self.samples.rows, *key)
-
-    def shapes(self, key: tuple[str, int], waves: int) -> tuple[np.ndarray, np.ndarray, float]:
-        """Compute the discrepancy shapes of a channel and their sizes.
-
-        Args:
-            key: name and column of the channel's residual.
-            waves: random cosine features beside the named shapes.
-
-        Returns:
-            Samples of the shapes `(k, S)`, their mean squares `(k,)`, and the mean square of the
-            channel's load in slow bands, over the logs.
-        """
-        columns: np.ndarray | None = None
-        squares, loads = [], []
-        for filtered, places in zip(self.filtered_logs, self.samples.where, strict=True):
-            place = place_of(filtered.rows, *key)
-            if place is None:
-                continue
-            raw = shapes(filtered.signals, *key, waves)
-            if columns is None:
-                columns = np.zeros((len(raw), len(self.samples.value)))
-            columns[:, places[place]] = filtered.sample(place, raw)
-            squares.append(np.mean(raw[:, filtered.mask[place]] ** 2, 1))
-            own = filtered.sample(place, load(filtered.signals, *key)[None])[0]
-            band = filtered.labels(place)[0]
-            loads.append(
-                sum(
-                    float(np.mean(own[band == b] ** 2))
-                    for b in range(SLOWEST_BANDS)
-                    if (band == b).any()
-                )
-            )
-        assert columns is not None
-        return columns, np.mean(squares, 0), float(np.mean(loads))
-
-
 def evidence_of(
     tests: Sequence[Signals], references: Sequence[Signals], rules: InferenceRules
 ) -> Evidence:
@@ -221,7 +159,7 @@ def evidence_of(
     errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), rubbing)
     errors.sort(key=lambda error: not error.steady)
     zeros = Zeros.of(tests, references, rubbing)
-    sets = [_set(tests, errors, zeros, rules, tested=True)]
+    sets = [log_set(tests, errors, zeros, rules, tested=True)]
     if all(row.residual_name in OF_SENSORS for row in sets[0].samples.rows):
         raise InputError(
             tests[0].log.name,
@@ -230,7 +168,7 @@ def evidence_of(
             "has too few ticks of which torques and motion are known: log longer, or more signals",
         )
     if references:
-        sets.append(_set(references, errors, zeros, rules, tested=False))
+        sets.append(log_set(references, errors, zeros, rules, tested=False))
     usual = {
         (effect.identifier, place, parameter): float(spread)
         for effect in WEIGHED.values()
@@ -254,7 +192,7 @@ def evidence_of(
     )
 
 
-def _joined(sets: Sequence[_Set], rules: InferenceRules) -> Samples:
+def _joined(sets: Sequence[LogSet], rules: InferenceRules) -> Samples:
     """Samples of all sets, one after the other."""
     sessions: list[int] = []
     for logs in sets:
@@ -270,30 +208,6 @@ def _joined(sets: Sequence[_Set], rules: InferenceRules) -> Samples:
         sessions,
         rules.noise.information,
     )
-
-
-def _set(
-    signals: Sequence[Signals],
-    errors: Sequence[nuisance.NuisanceParameter],
-    zeros: Zeros,
-    rules: InferenceRules,
-    tested: bool,
-) -> _Set:
-    filtered_logs = [filtering.filtered_log(signal, resting.sticking(signal)) for signal in signals]
-    floors = [noise_model.expected(filtered, rules.noise) for filtered in filtered_logs]
-    names = [signal.log.metadata.session or f"\0{i}" for i, signal in enumerate(signals)]
-    order = list(dict.fromkeys(names))
-    sessions = [order.index(name) for name in names]
-    samples = gather(filtered_logs, floors, sessions, rules.noise.information)
-    apart = zeros.columns(filtered_logs, samples, tested)
-    columns = np.zeros((len(errors), len(samples.value)))
-    for filtered, places in zip(filtered_logs, samples.where, strict=True):
-        for row, traces in nuisance_traces.columns(filtered, errors).items():
-            columns[:, places[row]] = traces
-    columns[[error.inertial for error in errors]] *= samples.felt
-    steady = len(apart) + sum(error.steady for error in errors)
-    columns = np.concatenate([apart, columns])
-    return _Set(filtered_logs, samples, floors, columns, len(apart), steady, tested)
 
 
 class _Cell(NamedTuple):
@@ -312,7 +226,7 @@ class _Cell(NamedTuple):
 
 
 def _channel(
-    key: tuple[str, int], sets: Sequence[_Set], rules: InferenceRules
+    key: tuple[str, int], sets: Sequence[LogSet], rules: InferenceRules
 ) -> tuple[Channel, float]:
     """A channel, and the share of its numbers under test in which the torque of its drives is no
     noise.
@@ -354,7 +268,7 @@ def _channel(
 
 
 def _scaled_shapes(
-    key: tuple[str, int], sets: Sequence[_Set], rules: InferenceRules
+    key: tuple[str, int], sets: Sequence[LogSet], rules: InferenceRules
 ) -> list[np.ndarray]:
     """Columns of the discrepancy of each set, with the deviation that they have at scale 1
     `(columns, S)`.
@@ -369,7 +283,7 @@ def _scaled_shapes(
     return [columns * scale[:, None] for columns, *_ in shaped]
 
 
-def _cells(logs: _Set, row: int, columns: np.ndarray, number: int, first: int) -> Iterator[_Cell]:
+def _cells(logs: LogSet, row: int, columns: np.ndarray, number: int, first: int) -> Iterator[_Cell]:
     """Cells of one row of a set, which is the one of this `number` and whose samples begin at
     `first` among all.
     """
@@ -385,7 +299,7 @@ def _cells(logs: _Set, row: int, columns: np.ndarray, number: int, first: int) -
         yield _Cell((number, s), (number, b), numbers, first + own[mine], whole[:, mine])
 
 
-def _load_noise(key: tuple[str, int], sets: Sequence[_Set]) -> tuple[list[np.ndarray], float]:
+def _load_noise(key: tuple[str, int], sets: Sequence[LogSet]) -> tuple[list[np.ndarray], float]:
     """Columns of the part of the load that is noise or vibration in each band, over all sets
     `(columns, S)` each, and the share of the numbers under test in which the drives' torque is no
     noise.

@@ -25,8 +25,8 @@ from hyperleg_design.gap.playback.overlay import alterations
 from hyperleg_design.gap.playback.plant import Plant
 from hyperleg_design.gap.playback.windows import Windows, short_windows
 from hyperleg_design.gap.signals.channels import held, resampled_or_none
-from hyperleg_design.gap.signals.conditioning import wrong_limits
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.stops import wrong_limits
 from hyperleg_design.simulation.alteration import Alteration
 
 LONGEST_STEP = 0.00125

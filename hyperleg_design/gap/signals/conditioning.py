@@ -35,6 +35,7 @@ from hyperleg_design.gap.signals.limit_cycle import LimitCycle, limit_cycle
 from hyperleg_design.gap.signals.sensed import sensed_velocity
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.smoothing import Smooth
+from hyperleg_design.gap.signals.stops import at_stop
 from hyperleg_design.gap.signals.torque_sensors import behind_gears, taken_before
 from hyperleg_design.simulation.drives import limits
 
@@ -43,12 +44,6 @@ EDGE = 4.0
 slowest smoother [rad]."""
 LONGEST_EDGE = 0.25
 """Most of that time, however slow the smoother is [s]."""
-STOP = 0.003
-"""Distance from the end of a joint's range within which its stop may push [rad]; assumed, a few
-steps of a sensor."""
-NO_STOP = 0.1
-"""Distance beyond its range that shows that a joint has no stop there [rad]; assumed, more than any
-stop gives way."""
 
 
 def condition(log: Log, subject: Subject) -> Signals:
@@ -224,34 +219,6 @@ def _drive_residual(
         f"fault do: {', '.join(np.array(subject.motors)[copied])}"
     )
     return drive, [note]
-
-
-def wrong_limits(subject: Subject, position: np.ndarray) -> np.ndarray:
-    """Find the joints whose log goes so far beyond the nominal range that there is no stop.
-
-    Args:
-        subject: the robot.
-        position: [rad], `(t, n)`.
-
-    Returns:
-        `(n,)`.
-    """
-    below, above = subject.position_low - NO_STOP, subject.position_high + NO_STOP
-    return np.asarray(((position < below) | (position > above)).any(0))
-
-
-def at_stop(subject: Subject, position: np.ndarray) -> np.ndarray:
-    """Find the ticks at which a stop may push on a joint, with a force that nobody knows.
-
-    Args:
-        subject: the robot.
-        position: [rad], `(t, n)`.
-
-    Returns:
-        `(t, n)`.
-    """
-    beyond = (position < subject.position_low + STOP) | (position > subject.position_high - STOP)
-    return np.asarray(beyond & ~wrong_limits(subject, position))
 
 
 def limited_torque(

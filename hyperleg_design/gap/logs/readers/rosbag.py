@@ -14,6 +14,7 @@ import contextlib
 import sqlite3
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -67,14 +68,19 @@ class _Stream:
     time: list[float] = field(default_factory=list)
     columns: dict[str, int] = field(default_factory=dict)
     """Place of each column that any message has, in order of appearance."""
+    places: dict[tuple[str, ...], list[int]] = field(default_factory=dict)
+    """Places of the columns of a message, by these columns."""
     rows: list[tuple[list[int], np.ndarray]] = field(default_factory=list)
     """Of each message, the places of its columns and their values."""
 
     def add(self, time: float, columns: tuple[str, ...], row: np.ndarray) -> None:
         """Append a message, which may have other columns than those before."""
-        places = [self.columns.setdefault(column, len(self.columns)) for column in columns]
+        if columns not in self.places:
+            self.places[columns] = [
+                self.columns.setdefault(column, len(self.columns)) for column in columns
+            ]
         self.time.append(time)
-        self.rows.append((places, row))
+        self.rows.append((self.places[columns], row))
 
     def arrays(self) -> tuple[np.ndarray, dict[str, np.ndarray], int]:
         """Sorted times, columns with NaN where a message lacks them, and messages out of order."""
@@ -178,8 +184,8 @@ def _streams(parts: list[Path], where: str) -> tuple[dict[_Source, _Stream], lis
                     where, message.topic, message.encoding, "is no known encoding: expects cdr"
                 )
             stamp, columns, row = _decoded(decode(message))
-            joints = frozenset(column.partition("/")[2] for column in columns)
-            stream = streams.setdefault(_Source(message.topic, message.type, joints), _Stream())
+            source = _Source(message.topic, message.type, _joints(columns))
+            stream = streams.setdefault(source, _Stream())
             stream.add(stamp if stamp > 0 else message.time, columns, row)
             held += len(row)
             if held > blocks.MAX_VALUES:
@@ -188,6 +194,11 @@ def _streams(parts: list[Path], where: str) -> tuple[dict[_Source, _Stream], lis
                     "too long to be held in memory: only its beginning was read",
                 ]
     return {k: s for k, s in streams.items() if len(s.rows) > 1 and s.columns}, remarks
+
+
+@cache
+def _joints(columns: tuple[str, ...]) -> frozenset[str]:
+    return frozenset(column.partition("/")[2] for column in columns)
 
 
 def _decoder(where: str) -> Callable[[mcap.Message], Any]:
