@@ -77,7 +77,8 @@ def posterior_of(
         names = {name for candidate in hypothesis.candidates for name in _stated(candidate)}
         for name in sorted(names):
             probability[name] = probability.get(name, 0.0) + weight
-    probability = {name: min(p, own.most_certain) for name, p in probability.items()}
+    highest = own.highest(bool(evidence.references))
+    probability = {name: min(p, highest) for name, p in probability.items()}
     ranked = np.argsort(-np.array(_effects(best)), kind="stable").tolist()
     faults = _faults(best, evidence, rules)
     ranked = [place for place in ranked if best.candidates[place] in faults]

@@ -38,14 +38,14 @@ def quiet(noise, rules):
     return 0.0, -9.0
 
 
-def answer(*hypotheses, closed=1.0, usual=None):
+def answer(*hypotheses, closed=1.0, usual=None, references=()):
     ranked = tuple(sorted(hypotheses, key=lambda one: -one.score))
     nothing_tested = {
         "bands_tested": np.zeros(0, int),
         "usual_noise": lambda noise, rules: np.zeros(0),
     }
     channels = (SimpleNamespace(referenced=False, noisy=quiet, **nothing_tested),)
-    evidence = SimpleNamespace(channels=channels, references=(), usual=usual or {})
+    evidence = SimpleNamespace(channels=channels, references=references, usual=usual or {})
     return posterior_of(Result(ranked, ()), evidence, SimpleNamespace(closed=closed), RULES)
 
 
@@ -58,10 +58,18 @@ def test_nothing_is_none():
 def test_a_cause_far_ahead_is_explained():
     found = answer(hypothesis(0.0), hypothesis(30.0, ("a", "x")), hypothesis(10.0, ("b", "x")))
     assert found.verdict == "explained"
-    assert found.probability["a", "x", False] == RULES.posterior.most_certain
+    assert found.probability["a", "x", False] == RULES.posterior.most_certain_alone
     assert found.closed == pytest.approx(1.0)
     assert found.remainder == 0.0
     assert [candidate.name for _, candidate in found.rivals] == [("b", "x", False)]
+
+
+def test_references_make_an_answer_more_certain():
+    name = "coulomb_friction", "x"
+    sure = hypothesis(0.0), hypothesis(30.0, name)
+    found = answer(*sure, references=(SimpleNamespace(),))
+    assert found.probability[*name, False] == RULES.posterior.most_certain
+    assert RULES.posterior.most_certain > RULES.posterior.most_certain_alone
 
 
 def test_rivals_as_probable_make_it_ambiguous():
