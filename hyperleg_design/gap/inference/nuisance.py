@@ -57,7 +57,22 @@ after it) less friction at the speed itself, and the deviation of its share [-].
 FILTERED, OF_FILTER = "speed_filtered", 0.005
 """Delay of the speed that a controller's damping acts on, and its deviation [s]: drives filter
 speeds at 30-200 Hz, or difference positions (assumed)."""
-UNLISTED = (*SPEEDS, SOLE, SOLE_GIVES, FORCES_LATE, FORCES_SCALED, TORQUES_LATE, STEPPED, FILTERED)
+BACK_EMF, OF_ROTOR = "back_emf", 0.7
+"""Torque that a current loop gives up to the changing back-EMF of its motor: short of the command
+by an inertia times the acceleration, K_t^2 / (R w) for a loop of bandwidth w, which is the rotor's
+over the product of w and the motor's mechanical time constant. 0.7 is the deviation of the ratio
+[-]: time constants of 1 to 3 ms and loops of 100 Hz to 1 kHz give 0.05 to 1.6 (assumed)."""
+UNLISTED = (
+    *SPEEDS,
+    SOLE,
+    SOLE_GIVES,
+    FORCES_LATE,
+    FORCES_SCALED,
+    TORQUES_LATE,
+    STEPPED,
+    FILTERED,
+    BACK_EMF,
+)
 """Nuisance parameters that belong to no effect of the catalogue, one of each name at a place."""
 
 
@@ -78,8 +93,8 @@ class NuisanceParameter:
 
     @property
     def steady(self) -> bool:
-        """Whether it is the same in all sessions: masses, rotors, and filters of drives are."""
-        return self.inertial or self.effect == FILTERED
+        """Whether it is the same in all sessions: masses, rotors, and settings of drives are."""
+        return self.inertial or self.effect in (FILTERED, BACK_EMF)
 
     @property
     def name(self) -> str:
@@ -138,6 +153,9 @@ def nuisance_parameters(
     parameters += [NuisanceParameter(FORCES_SCALED, foot, 0, OF_FORCES) for foot in subject.feet]
     for m, motor in enumerate(subject.motors):
         parameters += usual.at("motor", motor)
+        parameters.append(
+            NuisanceParameter(BACK_EMF, motor, 0, OF_ROTOR * float(subject.rotor_inertia[m]))
+        )
         if motor in driven:
             parameters += [
                 NuisanceParameter(GEARED, motor, 0, OF_SPEED),

@@ -20,6 +20,7 @@ from hyperleg_design.gap.effects.series import first_derivative
 from hyperleg_design.gap.effects.transmissions import belt
 from hyperleg_design.gap.effects.usual import least_friction
 from hyperleg_design.gap.inference.nuisance import (
+    BACK_EMF,
     FILTERED,
     FORCES_LATE,
     FORCES_SCALED,
@@ -77,7 +78,7 @@ def traces(signals: Signals, errors: Sequence[NuisanceParameter]) -> list[dict[s
             by_parameter.append({b: v * error.spread for b, v in trace.items()})
             continue
         if error.effect in UNLISTED:
-            unlisted = {STEPPED: _stepped, FILTERED: _filtered}.get(
+            unlisted = {STEPPED: _stepped, FILTERED: _filtered, BACK_EMF: _back_emf}.get(
                 error.effect, _speeds if error.effect in SPEEDS else _told
             )
             by_parameter.append(unlisted(signals, error))
@@ -171,6 +172,19 @@ def _filtered(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarra
         for residual_name, rows in before_measurement(signals, changes).items()
     }
     return traced | ({"control": control} if "control" in signals.residual else {})
+
+
+def _back_emf(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
+    """Trace of `BACK_EMF`: torque that is missing where the motor accelerates. A motor without
+    current control has all of its back-EMF in its model.
+    """
+    subject = signals.subject
+    motor = subject.motors.index(error.location)
+    if not is_commanded(signals, motor) or np.isfinite(subject.supply[motor]):
+        return {}
+    missing = -error.spread * (signals.acceleration @ subject.joint_from_motor[:, motor])
+    traced = before_measurement(signals, {motor: missing[None]})
+    return {residual_name: rows[0] for residual_name, rows in traced.items()}
 
 
 def _told(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:

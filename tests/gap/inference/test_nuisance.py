@@ -117,5 +117,5 @@ def test_masses_and_filters_of_drives_are_the_same_in_all_sessions(
     subject = load_subject(str(robot_files["coupled"]), [])
     parameters = nuisance_parameters(subject, 0.005)
     steady = {parameter.effect for parameter in parameters if parameter.steady}
-    assert {"speed_filtered", "link_mass", "rotor_inertia"} <= steady
+    assert {"speed_filtered", "back_emf", "link_mass", "rotor_inertia"} <= steady
     assert not steady & {"coulomb_friction", "torque_constant", "encoder_offset", "command_delay"}

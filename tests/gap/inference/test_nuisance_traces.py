@@ -8,6 +8,7 @@ import pytest
 import robots
 
 from hyperleg_design.gap.inference.nuisance import (
+    BACK_EMF,
     FILTERED,
     FORCES_LATE,
     FORCES_SCALED,
@@ -113,6 +114,41 @@ def test_speeds_that_controllers_know_late_show_where_their_damping_asks_for_tor
     assert not np.any(
         list(found(supplied).values())
     )  # without current loops all damping is the motors' own
+
+
+CONSTANT, RESISTANCE, INDUCTANCE, BANDWIDTH = 0.09, 0.2, 1e-4, 2 * np.pi * 150
+"""Of a motor [Nm/A, Ohm, H] and of its current loop [rad/s]."""
+
+
+def current_loop(time, speed):
+    """Torque that a motor with a PI loop, whose zero is at R / L, gives when none is asked for."""
+    step, substeps = time[1] - time[0], 200
+    current, integral, torque = 0.0, 0.0, np.zeros(len(time))
+    for k in range(1, len(time)):
+        for part in range(substeps):
+            w = speed[k - 1] + (speed[k] - speed[k - 1]) * part / substeps
+            voltage = -BANDWIDTH * (INDUCTANCE * current + RESISTANCE * integral)
+            integral += current * step / substeps
+            push = voltage - RESISTANCE * current - CONSTANT * w
+            current += push / INDUCTANCE * step / substeps
+        torque[k] = CONSTANT * current
+    return torque
+
+
+def test_current_loops_give_up_torque_where_motors_accelerate(geared):
+    signals = diagnosed.conditioned(geared, targets_alone(1))[0]
+    errors = nuisance_parameters(signals.subject, signals.step)
+    place = next(i for i, e in enumerate(errors) if (e.effect, e.location) == (BACK_EMF, "hip"))
+    inertia = CONSTANT**2 / (RESISTANCE * BANDWIDTH)
+    found = traces(signals, errors)[place]
+    assert set(found) == {"motion"}
+    assert not found["motion"][:, 1].any()
+    (gear,) = signals.subject.joint_from_motor[0, [0]]
+    ticks = slice(200, 1200)
+    lost = current_loop(signals.time[ticks], gear * signals.velocity[ticks, 0])
+    expected = -gear * lost[100:]
+    shown = found["motion"][ticks, 0][100:] * inertia / errors[place].spread
+    assert np.std(shown - expected) < 0.1 * np.std(expected)
 
 
 @pytest.mark.slow
