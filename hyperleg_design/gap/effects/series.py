@@ -65,6 +65,36 @@ def lagged(values: np.ndarray, time_constant: np.ndarray, step: float) -> np.nda
     return out
 
 
+def swung(
+    values: np.ndarray, square: np.ndarray, time_constant: np.ndarray, step: float
+) -> np.ndarray:
+    """Signal after a mass on a spring, S y'' + T y' + y = u, exact for a signal that is straight
+    between ticks; it starts settled.
+
+    Args:
+        values: `(t,)`; unknown ticks are bridged, and unknown in the result.
+        square: S, of 1 over the circular frequency at which the mass swings `(k,)` [s^2], positive.
+        time_constant: T `(k,)` [s], not negative.
+        step: of the time base [s].
+
+    Returns:
+        `(k, t)`.
+    """
+    from scipy.signal import cont2discrete, lfilter, lfilter_zi
+
+    known = np.isfinite(values)
+    out = np.full((len(square), len(values)), np.nan)
+    if not known.any():
+        return out
+    filled = bridged(values)
+    for row, (mass, late) in enumerate(zip(square.tolist(), time_constant.tolist(), strict=True)):
+        top, bottom, _ = cont2discrete(([1.0], [mass, late, 1.0]), step, method="foh")
+        settled = lfilter_zi(top[0], bottom) * filled[0]
+        out[row] = lfilter(top[0], bottom, filled, zi=settled)[0]
+    out[:, ~known] = np.nan
+    return out
+
+
 def band_limited(values: np.ndarray, step: float, cutoff: float) -> np.ndarray:
     """Signal `(t,)` without what lies above a frequency [Hz], no delay; unknown ticks are
     bridged.

@@ -7,7 +7,7 @@ import numpy as np
 from hyperleg_design.gap.effects.strength import joint_strength
 from hyperleg_design.gap.model.subject import Subject
 
-LATE, LATE_TICKS = 0.001, 0.15
+LATE, LATE_TICKS = 0.002, 0.15
 """Usual delay between a command or measurement and its row in a log: a time [s], and a share of the
 log's step [-] (assumed)."""
 COULOMB_LEAST = 0.0008

@@ -16,7 +16,7 @@ from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.channel import Channel
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.detectors.ringing import Ringing, ringing
+from hyperleg_design.gap.inference.detectors.ringing import MOTION, Ringing, ringing
 from hyperleg_design.gap.inference.gap_size import GapSize
 from hyperleg_design.gap.inference.posterior import Posterior, expanded
 from hyperleg_design.gap.inference.rules import InferenceRules
@@ -63,12 +63,14 @@ class Unexplained:
         return frequencies
 
     @cached_property
-    def ringing(self) -> dict[str, Ringing]:
-        """Joints that ring and are in no limit cycle."""
+    def ringing(self) -> dict[tuple[str, str], Ringing]:
+        """Residuals that ring, by their names and those of their joints or motors; not those of
+        joints in a limit cycle.
+        """
         logs = self.evidence.samples.filtered_logs
         count = len(self.evidence.signals)
         over = ringing(logs[:count], logs[count:], self.rules.posterior.ringing)
-        return {joint: heard for joint, heard in over.items() if joint not in self.cycling}
+        return {place: heard for place, heard in over.items() if place[1] not in self.cycling}
 
     @property
     def hides_faults(self) -> bool:
@@ -85,19 +87,9 @@ class Unexplained:
                 f"stability"
             )
             shapes.append(residual_shape(CYCLES, joint, text, 0.0))
-        for joint, heard in self.ringing.items():
-            text = (
-                f"has a torque residual {heard.times:.0f} times as large above the frequencies of "
-                f"its motion as in the references, most at {heard.frequency:.0f} Hz, in which "
-                f"small faults cannot be seen: look for play, a belt that gives, a loose part, or "
-                f"a control loop on the edge of stability"
-            )
-            if heard.moves > MOVES:
-                text += (
-                    f", first at {heard.mover}, which moves {heard.moves:.2g} times as much there "
-                    f"as in the references"
-                )
-            shapes.append(residual_shape(RINGS, joint, text, 0.0))
+        for (residual, name), heard in self.ringing.items():
+            text = _rings(heard) if residual == MOTION else _rattles(heard)
+            shapes.append(residual_shape(RINGS, name, text, 0.0))
         remainder = self.posterior.remainder
         for cause, text in self.unlisted_causes:
             if not cause.standing:
@@ -159,6 +151,31 @@ class Unexplained:
             if (times := ratio(channel, own, self.rules)) > 1
         ]
         return sorted(over, key=lambda entry: -entry[1])[:MOST_CHANNELS]
+
+
+def _rings(heard: Ringing) -> str:
+    """What a joint does that rings."""
+    text = (
+        f"has a torque residual {heard.times:.0f} times as large above the frequencies of its "
+        f"motion as in the references, most at {heard.frequency:.0f} Hz, in which small faults "
+        f"cannot be seen: look for play, a belt that gives, a loose part, or a control loop on the "
+        f"edge of stability"
+    )
+    if heard.moves > MOVES:
+        text += (
+            f", first at {heard.mover}, which moves {heard.moves:.2g} times as much there as in "
+            f"the references"
+        )
+    return text
+
+
+def _rattles(heard: Ringing) -> str:
+    """What a motor does that turns to and fro against its joints."""
+    return (
+        f"turns to and fro against its joints {heard.times:.0f} times as much as in the references "
+        f"above the frequencies of its motion, most at {heard.frequency:.0f} Hz: look for play or "
+        f"a belt that gives between this motor and its joints"
+    )
 
 
 def _cycles(signals: Signals) -> dict[str, float]:

@@ -11,8 +11,10 @@ The rotor turns by M^T q + s [rad]; s is the stretch, or the place in the dead z
 - Values of `side` between mix both.
 
 **Stretch.** The torque through the belt is u = [M^-1 (needed torque less the rotors')], and
-s = compliance u, filtered by the belt's damping. A belt that stiffens follows
-k (1 + (stiffening s)^2) s = u, with `stiffening` at the joint that it moves most.
+s = compliance u, filtered by the belt's damping. With encoders at the rotors u is that of the motion
+of the rotors, and the joints, of inertia I at the motor, swing on the belt:
+s + compliance I s'' = compliance u. A belt that stiffens follows k (1 + (stiffening s)^2) s = u, with
+`stiffening` at the joint that it moves most.
 
 **Friction.** Friction of gears acts on the rotor, before the belt, and stretches no belt. That of
 joints may act behind it (`behind` 1), which matters with encoders at the rotors: the joint stands
@@ -42,6 +44,7 @@ from hyperleg_design.gap.effects.series import (
     first_derivative,
     lagged,
     second_derivative,
+    swung,
 )
 from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.machine import rotor
@@ -56,6 +59,8 @@ BAND = 0.2
 
 CHOSEN = 0.5
 """From which a choice between 0 and 1 is 1."""
+LEAST_SHARE = 1e-3
+"""Least inertia of a joint where its posture is unknown, over the largest one in the log [-]."""
 BEHIND_BAND = 15.0
 """The same of a belt with friction at its joint [Hz]; above it, noise of the torque would make a
 joint at rest turn round (assumed)."""
@@ -154,6 +159,23 @@ def _passed_on(signals: Signals, motor: int, spun: np.ndarray, band: float) -> n
     )
 
 
+@memoized
+def carried(signals: Signals, motor: int) -> np.ndarray:
+    """Inertia of the joints that a motor moves, at the motor, all others held.
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The inertia `(t,)` [kg m^2].
+    """
+    share = signals.subject.motor_from_joint[motor]
+    (needed,) = rigid.accelerating(signals.subject, signals.position, [share], rotors=False)
+    inertia = np.asarray(np.nan_to_num(needed) @ share)
+    return np.maximum(inertia, LEAST_SHARE * inertia.max())
+
+
 def stretch(
     signals: Signals,
     through: np.ndarray,
@@ -161,6 +183,7 @@ def stretch(
     compliance: np.ndarray,
     damping_ratio: np.ndarray,
     stiffening: np.ndarray | None = None,
+    swings: np.ndarray | None = None,
 ) -> np.ndarray:
     """How far a rotor turns beyond its joints under load, on its side of M `(k, t)` [rad].
 
@@ -172,9 +195,16 @@ def stretch(
         damping_ratio: of the rotor on its belt `(k,)`.
         stiffening: 1 over the joint's angle at which the belt is twice as stiff `(k,)` [1/rad]; by
             default 0.
+        swings: where the torque is that of the rotors' motion, on which the joints swing `(k,)`; by
+            default nowhere.
     """
     late = 2 * damping_ratio * np.sqrt(rotor(signals.subject, motor) * compliance)
     moved = np.asarray(compliance[:, None] * lagged(through, late, signals.step))
+    if swings is not None and (swings := swings & (compliance > 0)).any():
+        square = compliance[swings] * np.mean(carried(signals, motor))
+        moved[swings] = compliance[swings, None] * swung(
+            through, square, late[swings], signals.step
+        )
     if stiffening is not None and stiffening.any():
         bend = stiffening / signals.subject.motor_over_joint(motor)
         stiff = bend > 0

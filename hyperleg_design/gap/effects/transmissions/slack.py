@@ -5,8 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from hyperleg_design.gap.effects.series import band_limited
-from hyperleg_design.gap.effects.transmissions.belt import BAND, CHOSEN, frictionless, load
-from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.effects.transmissions.belt import (
+    BAND,
+    CHOSEN,
+    carried,
+    frictionless,
+    load,
+)
 from hyperleg_design.gap.model.machine import rotor
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import dry_friction
@@ -18,8 +23,6 @@ under load hardly bounce. Joints, which hit a rotor that is held, do not."""
 CROSSING, CROSSING_BAND = 0.8, 0.15
 """c, the load below which a rotor that does not coast is on its way across; band of its crossing,
 over the log's rate (assumed)."""
-LEAST_SHARE = 1e-3
-"""Least inertia of a joint where its posture is unknown, over the largest one in the log [-]."""
 
 
 def slack(
@@ -111,22 +114,13 @@ def _driven(
     """
     subject = signals.subject
     push = _joint_alone(signals, motor) if at_rotor else _rotor_alone(signals, motor)
-    inertia = _inertia(signals, motor) if at_rotor else rotor(subject, motor)
+    inertia = carried(signals, motor) if at_rotor else rotor(subject, motor)
     turning = np.nan_to_num(signals.velocity @ subject.joint_from_motor[:, motor])
     return (
         (np.nan_to_num(push) * signals.step).tolist(),
         turning.tolist(),
         np.broadcast_to(signals.step / inertia, signals.time.shape),
     )
-
-
-@memoized
-def _inertia(signals: Signals, motor: int) -> np.ndarray:
-    """Inertia of the joints that a motor moves, at the motor, all others held `(t,)` [kg m^2]."""
-    share = signals.subject.motor_from_joint[motor]
-    (needed,) = rigid.accelerating(signals.subject, signals.position, [share], rotors=False)
-    inertia = np.asarray(np.nan_to_num(needed) @ share)
-    return np.maximum(inertia, LEAST_SHARE * inertia.max())
 
 
 def _rotor_alone(signals: Signals, motor: int) -> np.ndarray:
@@ -140,4 +134,4 @@ def _rotor_alone(signals: Signals, motor: int) -> np.ndarray:
 
 def _joint_alone(signals: Signals, motor: int) -> np.ndarray:
     """Acceleration of a rotor against its free joints `(t,)` [rad/s^2]."""
-    return frictionless(signals, motor) / _inertia(signals, motor)
+    return frictionless(signals, motor) / carried(signals, motor)

@@ -23,7 +23,10 @@ from hyperleg_design.simulation.drives.two_mass import DAMPING_RATIO, Belt
 RESONANCE = 12.0
 """Usual frequency of a rotor on its belt, its joint held [Hz]: belts ring at 5-30 Hz."""
 RESONANCES = (40.0, 20.0, 10.0, 5.0)
-"""Resonance frequencies from which a search starts [Hz]."""
+"""Resonance frequencies of rotors from which a search starts [Hz]."""
+SWINGS, SWING_DAMPING = (20.0, 10.0, 6.0, 4.0, 2.5), 0.15
+"""The same of joints that swing on the belts of rotors whose motion is logged, and the damping
+ratio of the swing there [-]."""
 SLOWEST = 0.5
 """Lowest frequency of a rotor on its belt that is searched [Hz]."""
 STIFFER = 30.0
@@ -81,10 +84,11 @@ class TransmissionElasticity(GearEffect):
     def _left(self, signals: Signals, motor: int, *values: Any) -> dict[str, np.ndarray]:
         compliance, damping_ratio, side, behind, stiffening = values
         load, transmitted = belt.load(signals, motor), belt.transmitted(signals, motor)
-        moved = belt.stretch(signals, load, motor, compliance, damping_ratio, stiffening)
+        at_rotor = side >= belt.CHOSEN
+        moved = belt.stretch(signals, load, motor, compliance, damping_ratio, stiffening, at_rotor)
         bent = (stiffening > 0) | (behind >= belt.CHOSEN)
         for rubs in (True, False):
-            if (mine := bent & (side >= belt.CHOSEN) & ((behind >= belt.CHOSEN) == rubs)).any():
+            if (mine := bent & at_rotor & ((behind >= belt.CHOSEN) == rubs)).any():
                 given = belt.given(signals, motor, rubs=rubs)
                 moved[mine] = belt.stretch(
                     signals,
@@ -136,7 +140,13 @@ class TransmissionElasticity(GearEffect):
         which may stiffen.
         """
         stiff = [self._compliance(frequency, location, signals.subject) for frequency in RESONANCES]
-        plain = [[c, DAMPING_RATIO, side, 0.0, 0.0] for side in (0.0, 1.0) for c in stiff]
+        motor = signals.subject.motors.index(location)
+        over = belt.carried(signals, motor).mean() / machine.rotor(signals.subject, motor)
+        damped = min(SWING_DAMPING * np.sqrt(over), 1.0)
+        plain = [[c, DAMPING_RATIO, 0.0, 0.0, 0.0] for c in stiff] + [
+            [self._compliance(f, location, signals.subject) / over, damped, 1.0, 0.0, 0.0]
+            for f in SWINGS
+        ]
         bent = [
             [c, DAMPING_RATIO, 1.0, behind, bend]
             for behind, bend in ((0.0, STIFFER), (1.0, 0.0), (1.0, STIFFER))

@@ -1,5 +1,5 @@
-"""Joints that ring: above the frequencies of their motion their residuals are far larger than in
-the references.
+"""Joints that ring, and rotors that rattle against their joints: above the frequencies of their
+motion their residuals are far larger than in the references.
 
 Play that knocks, a loose part and a control loop on the edge of its stability all do so. None of
 them is noise, but what a log shows above its motion is taken for the noise of its sensors, in which
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import welch
 
-from hyperleg_design.gap.inference.white_noise import has_room, white_density
+from hyperleg_design.gap.inference.white_noise import HIGHEST, has_room, white_density
 from hyperleg_design.gap.signals.filtering import FilteredLog, Row
 from hyperleg_design.gap.signals.smoothing import bridged
 
@@ -24,13 +24,18 @@ WINDOW = 1024
 """Most ticks in a window of the spectrum in which the loudest frequency is looked up."""
 
 
+MOTION, TRANSMISSION = HEARD = "motion", "transmission"
+"""Residuals that are listened to: of the torque of joints, and of the speed of rotors over that of
+their joints."""
+
+
 @dataclass(frozen=True)
 class Ringing:
-    """How loud a joint rings."""
+    """How loud a residual of a joint or a motor rings."""
 
     times: float
-    """Root mean square of its residual of motion above the frequencies of the motion, in the
-    loudest log, over that in the loudest reference [-]."""
+    """Root mean square of the residual above the frequencies of the motion, in the loudest log,
+    over that in the loudest reference [-]."""
     frequency: float
     """Above those of the motion, at which this log is loudest [Hz]."""
     mover: str
@@ -41,36 +46,36 @@ class Ringing:
 
 def ringing(
     tests: Sequence[FilteredLog], references: Sequence[FilteredLog], least: float
-) -> dict[str, Ringing]:
-    """Find the joints that ring in a log under test and in no reference.
+) -> dict[tuple[str, str], Ringing]:
+    """Find the joints and rotors that ring in a log under test and in no reference.
 
     Args:
         tests: logs under test.
-        references: of the healthy robot; without any, no joint is named.
-        least: density over that of the references from which a joint rings,
+        references: of the healthy robot; without any, none is named.
+        least: density over that of the references from which a residual rings,
             `PosteriorRules.ringing` [-].
 
     Returns:
-        How loud each of these joints is, the loudest first.
+        How loud each is, by its residual and its name, the loudest first.
     """
     quiet = [_densities(log) for log in references]
     loud = [_densities(log) for log in tests]
-    over: dict[str, Ringing] = {}
-    for joint in dict.fromkeys(joint for density in loud for joint in density):
-        own = [density.get(joint, 0.0) for density in loud]
-        before = max((density.get(joint, 0.0) for density in quiet), default=0.0)
+    over: dict[tuple[str, str], Ringing] = {}
+    for place in dict.fromkeys(place for density in loud for place in density):
+        own = [density.get(place, 0.0) for density in loud]
+        before = max((density.get(place, 0.0) for density in quiet), default=0.0)
         loudest = int(np.argmax(own))
         if before > 0 and own[loudest] > least * before:
             times = float(np.sqrt(own[loudest] / before))
-            frequency = _loudest_frequency(tests[loudest], joint)
+            frequency = _loudest_frequency(tests[loudest], place)
             mover, moves = _mover(tests[loudest], references, frequency)
-            over[joint] = Ringing(times, frequency, mover, moves)
+            over[place] = Ringing(times, frequency, mover, moves)
     return dict(sorted(over.items(), key=lambda entry: -entry[1].times))
 
 
-def _loudest_frequency(log: FilteredLog, joint: str) -> float:
-    """Frequency above its cutoff at which a joint's residual of motion is largest [Hz]."""
-    row, _, values = next(entry for entry in _of_motion(log) if entry[0].name == joint)
+def _loudest_frequency(log: FilteredLog, place: tuple[str, str]) -> float:
+    """Frequency above its cutoff at which a residual is largest [Hz]."""
+    row, _, values = next(entry for entry in _heard(log) if _place(entry[0]) == place)
     step = log.signals.step
     frequency, density = welch(values, 1 / step, nperseg=min(WINDOW, len(values)))
     above = frequency >= min(row.cutoff, 0.25 / step)
@@ -104,20 +109,35 @@ def _motion_at(log: FilteredLog, frequency: float) -> dict[str, float]:
     return sizes
 
 
-def _densities(log: FilteredLog) -> dict[str, float]:
-    """By joint, the density of its residual of motion above its cutoff [unit^2/Hz]; not of joints
-    whose motion goes up to what the log's rate can show.
+def _densities(log: FilteredLog) -> dict[tuple[str, str], float]:
+    """The density of each residual above its cutoff [unit^2/Hz]; not of those whose motion goes up
+    to what the log's rate can show.
     """
     return {
-        row.name: white_density(values, mask, row.cutoff, log.signals.step)
-        for row, mask, values in _of_motion(log)
+        _place(row): (white_density if row.residual_name == MOTION else _mean_density)(
+            values, mask, row.cutoff, log.signals.step
+        )
+        for row, mask, values in _heard(log)
         if has_room(row.cutoff, log.signals.step)
     }
 
 
-def _of_motion(log: FilteredLog) -> Iterator[tuple[Row, np.ndarray, np.ndarray]]:
-    """Rows of the residual of motion, their known ticks, and values that are zero elsewhere."""
+def _mean_density(values: np.ndarray, mask: np.ndarray, cutoff: float, step: float) -> float:
+    """As `white_density`, but the mean: a rotor that hits both ends of its play at one rate is a
+    line, and other lines of its speed over that of its joints are as loud in the references.
+    """
+    frequency, density = welch(values, 1 / step, nperseg=min(WINDOW, len(values)))
+    above = (frequency >= cutoff) & (frequency <= HIGHEST / step)
+    return float(density[above].mean()) if mask.any() and above.any() else 0.0
+
+
+def _place(row: Row) -> tuple[str, str]:
+    return row.residual_name, row.name
+
+
+def _heard(log: FilteredLog) -> Iterator[tuple[Row, np.ndarray, np.ndarray]]:
+    """Rows of `HEARD`, their known ticks, and values that are zero elsewhere."""
     for row, mask in zip(log.rows, log.mask, strict=True):
-        if row.residual_name == "motion":
-            residual = log.signals.residual["motion"][:, row.column]
+        if row.residual_name in HEARD:
+            residual = log.signals.residual[row.residual_name][:, row.column]
             yield row, mask, np.where(mask, np.nan_to_num(residual), 0.0)
