@@ -1,7 +1,13 @@
 import numpy as np
 import pytest
 
-from hyperleg_design.gap.effects.series import band_limited, delayed, lagged, second_derivative
+from hyperleg_design.gap.effects.series import (
+    band_limited,
+    delayed,
+    lagged,
+    second_derivative,
+    swung,
+)
 
 STEP = 0.005
 TIME = np.arange(4000) * STEP
@@ -30,6 +36,20 @@ def test_lag_is_that_of_the_differential_equation():
     expected = np.sin(omega * TIME - phase) / np.hypot(1, omega * lag)
     late = 10 * lag < TIME
     assert np.abs(found - expected)[late].max() < 1e-3
+
+
+def test_a_swing_is_that_of_the_differential_equation():
+    frequency, damping, omega = 2 * np.pi * 4.0, 0.1, 2 * np.pi * 3.0
+    square, late = frequency**-2, 2 * damping / frequency
+    found = swung(np.sin(omega * TIME), np.array([square]), np.array([late]), STEP)[0]
+    response = 1 / (1 - square * omega**2 + 1j * late * omega)
+    expected = np.abs(response) * np.sin(omega * TIME + np.angle(response))
+    assert np.abs(response) > 2
+    assert np.abs(found - expected)[TIME > 4].max() < 0.01
+    settled = swung(np.full(50, 2.0), np.array([square]), np.array([late]), STEP)
+    np.testing.assert_allclose(settled, 2.0)
+    gap = np.where(np.arange(50) == 9, np.nan, 2.0)
+    assert np.flatnonzero(np.isnan(swung(gap, np.ones(1), np.ones(1), STEP)[0])).tolist() == [9]
 
 
 def test_no_lag_is_no_change_and_a_constant_stays():

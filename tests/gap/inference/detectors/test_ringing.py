@@ -3,6 +3,7 @@ from dataclasses import replace
 import diagnosed
 import numpy as np
 import pytest
+import robots
 from scipy.signal import butter, sosfilt
 
 from hyperleg_design.gap.inference.detectors.ringing import ringing
@@ -76,6 +77,26 @@ def test_the_joint_that_moves_at_that_frequency_is_known(filtered):
     near = [heard for heard in over.values() if 25 < heard.frequency < 36]
     assert all(heard.mover == "knee" and heard.moves > 5 for heard in near)
     assert near
+
+
+def test_a_rotor_that_rattles_against_its_joint_is_heard(robot_files):
+    """At one frequency: a line, which the median over frequencies does not see."""
+
+    def run(seed, size):
+        log = robots.geared_run("joint", ("hip", "knee"), seed=seed, session=f"run {seed}")
+        channel = "motor_velocity/hip"
+        rattle = size * np.sin(2 * np.pi * 38 * log.time)
+        return log.changed(signals={**log.signals, channel: log.column(channel) + rattle})
+
+    runs = [run(1, 2.0), run(2, 0.0), run(3, 0.0)]
+    loud, *quiet = (
+        filtered_log(one) for one in diagnosed.conditioned(robot_files["geared"], *runs)
+    )
+    (place, heard), *others = ringing([loud], quiet, LOUD).items()
+    assert place == ("transmission", "hip")
+    assert 37 < heard.frequency < 39
+    assert not others
+    assert ringing(quiet[:1], quiet[1:], LOUD) == {}
 
 
 def test_a_robot_that_rings_is_not_said_to_be_healthy(robot_files):
