@@ -141,16 +141,16 @@ class Answer:
         return tuple(stated)
 
     def causes(self, places: Sequence[int]) -> tuple[Named, ...]:
-        """Collect some candidates of the most probable hypothesis, in their order.
+        """Collect some candidates of the most probable hypothesis, those first that close most of
+        the gap; of alike ones, in whole per cent, in their order.
 
         Args:
             places: indices of the candidates.
         """
-        posterior = self.posterior
-        collected: list[Named] = []
-        for place in places:
-            collected += self.named(posterior.hypothesis, posterior.hypothesis.candidates[place])
-        return tuple(collected)
+        hypothesis = self.posterior.hypothesis
+        named = [self.named(hypothesis, hypothesis.candidates[place]) for place in places]
+        named.sort(key=lambda causes: -max(round(cause.closed, 2) for cause in causes))
+        return tuple(cause for causes in named for cause in causes)
 
     def named(self, hypothesis: Hypothesis, candidate: Candidate) -> list[Named]:
         """Name a candidate with its parameters.

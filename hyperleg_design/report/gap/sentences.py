@@ -142,6 +142,10 @@ def verdict_sentence(diagnosis: Entry) -> str:
     if verdict == "ambiguous":
         sets = [[named(member) for member in group] for group in diagnosis["equivalent"]]
         alike = "; ".join(joined(group, "or") for group in sets)
+        undecided = {named(member) for group in diagnosis["equivalent"] for member in group}
+        certain = [cause for cause in causes if named(cause) not in undecided]
+        if alike and certain:
+            return f"{capital(phrase(certain))}, and either {alike}: these logs cannot tell which."
         return f"Either {alike or phrase(causes)}: these logs cannot tell which."
     plural = len(together(causes)) > 1
     most = "most of " if diagnosis.get("remainder") else ""

@@ -1,13 +1,28 @@
 """Diagnosis by the posterior of hypotheses, on a small robot in plain MuJoCo."""
 
 import json
+from types import SimpleNamespace
 
 import diagnosed
 import pytest
 
+from hyperleg_design.gap.pipeline.answer import Answer
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.results.diagnosis import SCHEMA_FILE, read_diagnosis
 from hyperleg_design.writing import write_json
+
+
+def test_the_cause_that_closes_most_comes_first(monkeypatch):
+    closed = {"ripple": (0.15,), "load": (0.2, 0.98), "belt": (0.9801,)}
+    monkeypatch.setattr(
+        Answer,
+        "named",
+        lambda _, __, name: [SimpleNamespace(name=name, closed=share) for share in closed[name]],
+    )
+    answer = Answer.__new__(Answer)
+    answer.posterior = SimpleNamespace(hypothesis=SimpleNamespace(candidates=tuple(closed)))
+    ordered = [cause.name for cause in answer.causes((0, 1, 2))]
+    assert ordered == ["load", "load", "belt", "ripple"]
 
 
 def test_a_robot_like_its_references_is_none(robot_files):

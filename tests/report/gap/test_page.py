@@ -105,7 +105,7 @@ def test_what_to_do_next_is_told(tmp_path: Path, signals) -> None:
     }
     told = diagnosis("ambiguous", causes=[CAUSE], equivalent=pair, separating_experiment=trial)
     text = written(tmp_path, told, signals)
-    assert "Either payload at arm or torque constant at swing: these logs cannot tell" in text
+    assert "and either payload at arm or torque constant at swing: these logs cannot tell" in text
     assert "Hang a known mass: weigh it first (5 minutes)." in text
 
 

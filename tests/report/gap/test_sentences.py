@@ -77,8 +77,14 @@ def test_each_verdict_is_one_sentence() -> None:
     rest = diagnosis("explained", FRICTION, remainder=0.2)
     assert verdict_sentence(rest).endswith("(torque 0.2 Nm) explains most of the gap.")
     pair = [[{"effect": "payload", "location": "arm"}, {"effect": "imu_bias", "location": "gyro"}]]
-    assert verdict_sentence(diagnosis("ambiguous", FRICTION[:1], equivalent=pair)) == (
+    either = [cause("payload", "arm", mass=(1.0, "kg"))]
+    assert verdict_sentence(diagnosis("ambiguous", either, equivalent=pair)) == (
         "Either payload at arm or IMU bias at gyro: these logs cannot tell which."
+    )
+    beside = diagnosis("ambiguous", [*FRICTION[:1], *either], equivalent=pair)
+    assert verdict_sentence(beside) == (
+        "Coulomb friction at a (torque 0.2 Nm), and either payload at arm or IMU bias at gyro: "
+        "these logs cannot tell which."
     )
 
 
