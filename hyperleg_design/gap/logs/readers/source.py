@@ -23,8 +23,8 @@ LATEST_START = 1e6
 
 
 def side_file(path: Path) -> Path:
-    """Name the file in which a user writes metadata of a source: `hyperleg.json` in a folder,
-    `NAME.json`, or `NAME.meta.json` beside a JSON file.
+    """Name the file in which a user writes metadata of a source: `hyperleg.json` in a folder, else
+    `NAME.json` beside it; `NAME.json` beside a file, or `NAME.meta.json` beside a JSON file.
 
     Args:
         path: of the source.
@@ -33,7 +33,9 @@ def side_file(path: Path) -> Path:
         The path of the side file, which need not exist.
     """
     if path.is_dir():
-        return path / FOLDER_FILE
+        outside = path.parent / f"{path.name}.json"
+        inside = path / FOLDER_FILE
+        return outside if outside.is_file() and not inside.is_file() else inside
     return path.with_suffix(".meta.json" if path.suffix.lower() == ".json" else ".json")
 
 

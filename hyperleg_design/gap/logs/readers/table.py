@@ -2,8 +2,9 @@
 row a tick.
 
 Columns of other names are used through a mapping from the file's names to ours, given to the reader
-or as `columns` in the side file. The time may be called t, time or timestamp. Separators comma,
-semicolon (then the decimal mark may be a comma) or tab.
+or as `columns` in the side file. Where the header has no units, `units` of the side file may state
+them, of signals or of columns: `{"position": "deg", "t": "ms"}`. The time may be called t, time or
+timestamp. Separators comma, semicolon (then the decimal mark may be a comma) or tab.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from hyperleg_design.gap.logs import blocks as row_blocks
 from hyperleg_design.gap.logs.blocks import chosen_blocks, shortened
 from hyperleg_design.gap.logs.columns import known_column, misspelt
 from hyperleg_design.gap.logs.log import Log
-from hyperleg_design.gap.logs.readers.source import beside, build_log
+from hyperleg_design.gap.logs.readers.source import beside, build_log, side_file
 from hyperleg_design.gap.logs.readers.units import factor, split_header
 
 TIMES = ("t", "time", "timestamp")
@@ -45,7 +46,12 @@ def read_csv(
     """
     user_metadata = beside(path, metadata)
     header, separator = _header(path)
-    chosen = _chosen(header, {**user_metadata.get("columns", {}), **(mapping or {})}, path.name)
+    chosen = _chosen(
+        header,
+        {**_texts(user_metadata, "columns", path), **(mapping or {})},
+        _texts(user_metadata, "units", path),
+        path.name,
+    )
     if "t" not in chosen:
         raise InputError(
             path.name, "t", header[:6], "is missing: expects the time in a column t, or mapped to t"
@@ -67,6 +73,14 @@ def read_csv(
     return [build_log(path, path.stem, time, values, {}, user_metadata, remarks)]
 
 
+def _texts(user_metadata: Mapping[str, Any], field: str, path: Path) -> dict[str, str]:
+    """A field of the side file that gives texts by name."""
+    texts = user_metadata.get(field, {})
+    if not isinstance(texts, Mapping) or not all(isinstance(v, str) for v in texts.values()):
+        raise InputError(side_file(path).name, field, texts, 'expects texts by name, {"a": "b"}')
+    return dict(texts)
+
+
 def _header(path: Path) -> tuple[list[str], str]:
     try:
         with path.open(encoding="utf-8-sig") as stream:
@@ -84,7 +98,7 @@ def _header(path: Path) -> tuple[list[str], str]:
 
 
 def _chosen(
-    header: list[str], mapping: Mapping[str, str], where: str
+    header: list[str], mapping: Mapping[str, str], units: Mapping[str, str], where: str
 ) -> dict[str, tuple[int, float]]:
     """Place in the file and factor of each column of the log."""
     names = [split_header(name) for name in header]
@@ -107,7 +121,13 @@ def _chosen(
             continue
         if column in chosen:
             raise InputError(where, column, None, "stands twice")
-        chosen[column] = (place, factor(column, unit_in_mapping or unit_in_header, where))
+        stated = units.get(column, units.get(column.partition("/")[0], ""))
+        given = unit_in_mapping or unit_in_header or stated
+        chosen[column] = (place, factor(column, given, where))
+    signals = {column.partition("/")[0] for column in chosen}
+    if unknown := [name for name in units if name not in chosen and name not in signals]:
+        remedy = f"is in no column of the file; expects {', '.join(sorted(signals))}, or a column"
+        raise InputError(where, f"units.{unknown[0]}", units[unknown[0]], remedy)
     return chosen
 
 

@@ -18,6 +18,15 @@ def test_the_side_file_of_a_folder_a_table_and_a_json_file(tmp_path):
     assert side_file(Path("a/run.json")) == Path("a/run.meta.json")
 
 
+def test_the_side_file_of_a_folder_may_lie_beside_it(tmp_path):
+    folder, beside_it = tmp_path / "run_1", tmp_path / "run_1.json"
+    folder.mkdir()
+    beside_it.write_text("{}")
+    assert side_file(folder) == beside_it
+    (folder / "hyperleg.json").write_text("{}")
+    assert side_file(folder) == folder / "hyperleg.json"
+
+
 def test_what_is_given_to_the_reader_goes_before_the_side_file(tmp_path):
     source = tmp_path / "run.csv"
     assert beside(source, None) == {}

@@ -26,6 +26,37 @@ def test_our_names_with_units(tmp_path):
     assert any("comment" in remark for remark in log.metadata.remarks)
 
 
+def test_units_of_the_side_file_hold_where_the_header_has_none(tmp_path):
+    path = tmp_path / "run.csv"
+    path.write_text(
+        "t,position/knee,position_target/knee,motor_current/knee [A]\n0,90,45,1\n10,180,45,2\n"
+    )
+    units = {"t": "ms", "position": "deg", "position_target/knee": "deg", "motor_current": "mA"}
+    (tmp_path / "run.json").write_text(json.dumps({"units": units}))
+    (log,) = open_log(path)
+    np.testing.assert_allclose(log.time, [0, 0.01])
+    np.testing.assert_allclose(log.column("position/knee"), np.radians([90, 180]))
+    np.testing.assert_allclose(log.column("position_target/knee"), np.radians([45, 45]))
+    np.testing.assert_allclose(log.column("motor_current/knee"), [1, 2])
+
+
+@pytest.mark.parametrize(
+    ("stated", "message"),
+    [
+        ({"position": "furlong"}, "is no unit of this signal"),
+        ({"velocity": "deg/s"}, "units.velocity.*is in no column of the file"),
+        ({"position": 5}, "units.*expects texts by name"),
+        (["deg"], "units.*expects texts by name"),
+    ],
+)
+def test_bad_units_of_the_side_file(tmp_path, stated, message):
+    path = tmp_path / "run.csv"
+    path.write_text("t,position/knee\n0,1\n0.01,2\n")
+    (tmp_path / "run.json").write_text(json.dumps({"units": stated}))
+    with pytest.raises(InputError, match=message):
+        open_log(path)
+
+
 @pytest.mark.parametrize("way", ["argument", "side file"])
 def test_mapping_of_other_names(tmp_path, way):
     path = write(tmp_path / "run.csv", "stamp;q1 (deg);u1\n0,0;90,0;1,5\n0,01;180,0;1,6\n")
