@@ -121,6 +121,20 @@ def without_missing_meshes(text: str) -> str:
     ).replace(' meshdir="nowhere"', "")
 
 
+ONE_SERVO = """
+<mujoco model="servo">
+  <option timestep="0.001" integrator="implicitfast"/>
+  <worldbody>
+    <body name="lever">
+      <joint name="swing" axis="0 1 0" armature="0.01" damping="0.4"/>
+      <inertial pos="0.1 0 0" mass="0.3" diaginertia="1e-3 1e-3 1e-3"/>
+    </body>
+  </worldbody>
+  <actuator><position name="s" joint="swing" kp="8" kv="0" forcerange="-3 3"/></actuator>
+</mujoco>
+"""
+
+
 def servo_run(text: str, target, duration: float, rate: float = 200.0, **metadata) -> Log:
     """Log of a robot that follows targets through actuators of its own file.
 

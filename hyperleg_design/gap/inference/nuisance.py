@@ -57,6 +57,10 @@ after it) less friction at the speed itself, and the deviation of its share [-].
 FILTERED, OF_FILTER = "speed_filtered", 0.005
 """Delay of the speed that a controller's damping acts on, and its deviation [s]: drives filter
 speeds at 30-200 Hz, or difference positions (assumed)."""
+TARGETS_AGED, OF_STEP = "target_age", 0.29
+"""Age of targets at the moment when a row's positions and torques are measured, where they are kept
+from row to row, beyond half a step; and its deviation over the step [-] (derived: anywhere within
+the step, as a program may log before it sends a target, or after)."""
 BACK_EMF, OF_ROTOR = "back_emf", 0.7
 """Torque that a current loop gives up to the changing back-EMF of its motor: short of the command
 by an inertia times the acceleration, K_t^2 / (R w) for a loop of bandwidth w, which is the rotor's
@@ -71,6 +75,7 @@ UNLISTED = (
     TORQUES_LATE,
     STEPPED,
     FILTERED,
+    TARGETS_AGED,
     BACK_EMF,
 )
 """Nuisance parameters that belong to no effect of the catalogue, one of each name at a place."""
@@ -93,7 +98,9 @@ class NuisanceParameter:
 
     @property
     def steady(self) -> bool:
-        """Whether it is the same in all sessions: masses, rotors, and settings of drives are."""
+        """Whether it is the same in all sessions: masses, rotors, and settings of drives and of
+        programs that log are.
+        """
         return self.inertial or self.effect in (FILTERED, BACK_EMF)
 
     @property
@@ -144,6 +151,7 @@ def nuisance_parameters(
     parameters += [
         NuisanceParameter(STEPPED, ROBOT, 0, OF_STEPPED),
         NuisanceParameter(FILTERED, ROBOT, 0, OF_FILTER),
+        NuisanceParameter(TARGETS_AGED, ROBOT, 0, OF_STEP * step),
     ]
     parameters += [
         NuisanceParameter(effect, foot, 0, SOLES)

@@ -14,6 +14,7 @@ from hyperleg_design.gap.effects.placing import (
     friction_trace,
     is_commanded,
     is_logged,
+    is_measured,
     motor_velocity,
 )
 from hyperleg_design.gap.effects.series import first_derivative
@@ -30,6 +31,7 @@ from hyperleg_design.gap.inference.nuisance import (
     STEPPED,
     SWINGS,
     SWUNG,
+    TARGETS_AGED,
     TOLD_LATE,
     TORQUES_LATE,
     TURNOVER,
@@ -38,7 +40,9 @@ from hyperleg_design.gap.inference.nuisance import (
     NuisanceParameter,
 )
 from hyperleg_design.gap.model import friction, pads
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.conditioning import are_kept
 from hyperleg_design.gap.signals.filtering import FilteredLog
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import dry_friction, sliding
@@ -78,9 +82,7 @@ def traces(signals: Signals, errors: Sequence[NuisanceParameter]) -> list[dict[s
             by_parameter.append({b: v * error.spread for b, v in trace.items()})
             continue
         if error.effect in UNLISTED:
-            unlisted = {STEPPED: _stepped, FILTERED: _filtered, BACK_EMF: _back_emf}.get(
-                error.effect, _speeds if error.effect in SPEEDS else _told
-            )
+            unlisted = _OWN.get(error.effect, _told)
             by_parameter.append(unlisted(signals, error))
             continue
         effect = EFFECTS[error.effect]
@@ -153,20 +155,46 @@ def _filtered(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarra
     without current control are damped by their own back-EMF, which has no delay.
     """
     subject = signals.subject
-    damping = np.where(
-        subject.passive | ~np.isfinite(subject.gains).all(1), 0.0, subject.gains[:, 1]
-    )
+    _, damping = _gains(subject)
     asked = applied(subject.motor_from_joint, error.spread * damping * signals.acceleration)
-    control, changes = np.zeros_like(asked), {}
-    controlled = [
-        is_commanded(signals, m) and not np.isfinite(subject.supply[m])
-        for m in range(len(subject.motors))
-    ]
-    for motor in np.flatnonzero(controlled).tolist():
+    return _asked(signals, np.where(np.isfinite(subject.supply), 0.0, asked))
+
+
+def _aged(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
+    """Trace of `TARGETS_AGED`: torque that controllers ask for by older targets. A torque that is
+    measured at one moment of the step differs as much from the mean, which moves the robot.
+    """
+    if signals.target is None or not are_kept(signals.log):
+        return {}
+    subject = signals.subject
+    stiffness, _ = _gains(subject)
+    older = -error.spread * first_derivative(signals.target.T, signals.step).T
+    asked = np.nan_to_num(applied(subject.motor_from_joint, stiffness * older))
+    traced = _asked(signals, asked)
+    sampled = [is_measured(signals, m) and is_commanded(signals, m) for m in range(asked.shape[1])]
+    if any(sampled):
+        motion = np.where(sampled, asked, 0.0) @ subject.joint_from_motor.T
+        traced["motion"] = traced.get("motion", 0.0) + motion
+    return traced
+
+
+def _gains(subject: Subject) -> np.ndarray:
+    """Stiffness and damping of the controllers, 0 where there are none `(2, n)`."""
+    without = subject.passive | ~np.isfinite(subject.gains).all(1)
+    return np.where(without, 0.0, subject.gains.T)
+
+
+def _asked(signals: Signals, torque: np.ndarray) -> dict[str, np.ndarray]:
+    """Trace of a change of what controllers ask motors for `(t, m)` [Nm]."""
+    torque = np.nan_to_num(torque)
+    control, changes = np.zeros_like(torque), {}
+    for motor in range(torque.shape[1]):
+        if not is_commanded(signals, motor):
+            continue
         if is_logged(signals, motor):
-            control[:, motor] = asked[:, motor]
+            control[:, motor] = torque[:, motor]
         else:
-            changes[motor] = asked[None, :, motor]
+            changes[motor] = torque[None, :, motor]
     traced = {
         residual_name: rows[0]
         for residual_name, rows in before_measurement(signals, changes).items()
@@ -222,6 +250,16 @@ def _told(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
         )
         torque, wrench = (a - b for a, b in zip(higher, lower, strict=True))
     return {"motion": torque} | ({"base": wrench} if "base" in signals.residual else {})
+
+
+_OWN = {
+    STEPPED: _stepped,
+    FILTERED: _filtered,
+    TARGETS_AGED: _aged,
+    BACK_EMF: _back_emf,
+    **dict.fromkeys(SPEEDS, _speeds),
+}
+"""Traces of parameters that belong to no effect of the catalogue; of all others `_told`."""
 
 
 def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:

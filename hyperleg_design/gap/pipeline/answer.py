@@ -141,15 +141,16 @@ class Answer:
         return tuple(stated)
 
     def causes(self, places: Sequence[int]) -> tuple[Named, ...]:
-        """Collect some candidates of the most probable hypothesis, those first that close most of
-        the gap; of alike ones, in whole per cent, in their order.
+        """Collect some candidates of the most probable hypothesis, first those that close the main
+        part of the gap, and each kind in its order.
 
         Args:
             places: indices of the candidates.
         """
         hypothesis = self.posterior.hypothesis
         named = [self.named(hypothesis, hypothesis.candidates[place]) for place in places]
-        named.sort(key=lambda causes: -max(round(cause.closed, 2) for cause in causes))
+        main = self.rules.posterior.main_part
+        named.sort(key=lambda causes: max(cause.closed for cause in causes) < main)
         return tuple(cause for causes in named for cause in causes)
 
     def named(self, hypothesis: Hypothesis, candidate: Candidate) -> list[Named]:

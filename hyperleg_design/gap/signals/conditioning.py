@@ -77,7 +77,7 @@ def condition(log: Log, subject: Subject) -> Signals:
     # the damping of a motor without current control is its own, by the speed that it really has
     seen = np.where(driven_by_duty(subject), np.nan, velocity)
     measured = _measured(log, subject, ticks)
-    command, jump, target, control, others = _command(log, subject, ticks, motion, seen, measured)
+    command, jump, target, control, others = _command(log, subject, ticks, motion, seen)
     residual = inertial_residuals(log, subject, ticks)
     speed, slip, refused = _motor_speeds(log, subject, ticks, motion.first, lacking)
     notes += refused
@@ -251,7 +251,6 @@ def _command(
     ticks: np.ndarray,
     motion: Smooth,
     speed: np.ndarray,
-    measured: np.ndarray | None,
 ) -> tuple[
     np.ndarray | None,
     np.ndarray | None,
@@ -262,18 +261,14 @@ def _command(
     """Motor torque that the controller asks for and its jumps, position targets, the residual of
     the control, and motors that it cannot speak of.
 
-    Around a row at which a target is new, the old one that was kept until then acts as long. Where
-    torques are measured, both they and the targets are of the moment of the row.
+    Around a row at which a target is new, the old one that was kept until then acts as long.
     """
     raw_target = log.stack("position_target", subject.joints)
     logged = of_motors(log, "motor_torque_command", subject)
     command = resampled(log.time, logged, ticks)
     old = np.full_like(raw_target, np.nan)
-    if _kept(log):
+    if are_kept(log):
         old[1:] = raw_target[:-1]
-    if measured is not None:
-        driven = np.isfinite(measured).any(0)
-        old[:, np.abs(subject.motor_from_joint[driven]).sum(0) > 0] = np.nan
     old = np.where(np.isfinite(old), old, raw_target)
     target = resampled_or_none(log.time, (raw_target + old) / 2, ticks)
     control: np.ndarray | None = None
@@ -304,8 +299,12 @@ def _command(
     return command if known else None, jump, target, control, others
 
 
-def _kept(log: Log) -> bool:
-    """Whether targets are kept from row to row."""
+def are_kept(log: Log) -> bool:
+    """Tell whether targets are kept from row to row.
+
+    Args:
+        log: the log.
+    """
     return (log.metadata.targets or ("kept" if log.step >= KEPT_FROM else "moving")) == "kept"
 
 

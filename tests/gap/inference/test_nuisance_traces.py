@@ -16,6 +16,7 @@ from hyperleg_design.gap.inference.nuisance import (
     SOLE,
     STEPPED,
     SWUNG,
+    TARGETS_AGED,
     TOLD_LATE,
     TORQUES_LATE,
     TURNOVER,
@@ -114,6 +115,38 @@ def test_speeds_that_controllers_know_late_show_where_their_damping_asks_for_tor
     assert not np.any(
         list(found(supplied).values())
     )  # without current loops all damping is the motors' own
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_torques_of_kept_targets_may_be_measured_at_either_end_of_the_step(tmp_path, late):
+    """A servo at 50 Hz: a program logs the torque before it sends a target, or after."""
+    step, smooth = 0.02, robots.waves(1, [0.6])
+    path = tmp_path / "servo.xml"
+    path.write_text(robots.without_missing_meshes(robots.ONE_SERVO))
+    log = robots.servo_run(
+        robots.ONE_SERVO, lambda t: smooth(np.floor(t / step + 1e-9) * step), 12, 50
+    )
+    (servo,) = log.names("motor_torque")
+    if late:
+        (joint,) = log.names("position_target")
+        targets = log.column(f"position_target/{joint}")
+        before = np.r_[targets[:1], targets[:-1]]
+        (signals,) = diagnosed.conditioned(path, log)
+        ratio = signals.subject.gains[0, 0] * signals.subject.motor_from_joint[0, 0]
+        torque = log.column(f"motor_torque/{servo}") - ratio * (targets - before)
+        log = log.changed(signals={**log.signals, f"motor_torque/{servo}": torque})
+    (signals,) = diagnosed.conditioned(path, log)
+    errors = nuisance_parameters(signals.subject, signals.step)
+    place = next(i for i, e in enumerate(errors) if e.effect == TARGETS_AGED)
+    age = (0.5 if late else -0.5) * step
+    found = traces(signals, errors)[place]
+    for residual_name in ("drive", "motion"):
+        left = signals.residual[residual_name] - found[residual_name] * age / errors[place].spread
+        use = slice(20, -20)
+        assert np.std(left[use]) < 0.2 * np.std(signals.residual[residual_name][use])
+    moving = signals.log.changed(metadata=replace(log.metadata, targets="moving"))
+    (signals,) = diagnosed.conditioned(path, moving)
+    assert traces(signals, errors)[place] == {}
 
 
 CONSTANT, RESISTANCE, INDUCTANCE, BANDWIDTH = 0.09, 0.2, 1e-4, 2 * np.pi * 150

@@ -6,14 +6,15 @@ from types import SimpleNamespace
 import diagnosed
 import pytest
 
+from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline.answer import Answer
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.results.diagnosis import SCHEMA_FILE, read_diagnosis
 from hyperleg_design.writing import write_json
 
 
-def test_the_cause_that_closes_most_comes_first(monkeypatch):
-    closed = {"ripple": (0.15,), "load": (0.2, 0.98), "belt": (0.9801,)}
+def test_causes_that_close_the_main_part_come_first(monkeypatch):
+    closed = {"ripple": (0.15,), "load": (0.2, 0.98), "belt": (0.99,), "dirt": (0.3,)}
     monkeypatch.setattr(
         Answer,
         "named",
@@ -21,8 +22,9 @@ def test_the_cause_that_closes_most_comes_first(monkeypatch):
     )
     answer = Answer.__new__(Answer)
     answer.posterior = SimpleNamespace(hypothesis=SimpleNamespace(candidates=tuple(closed)))
-    ordered = [cause.name for cause in answer.causes((0, 1, 2))]
-    assert ordered == ["load", "load", "belt", "ripple"]
+    answer.rules = InferenceRules()
+    ordered = [cause.name for cause in answer.causes((0, 1, 2, 3))]
+    assert ordered == ["load", "load", "belt", "ripple", "dirt"]
 
 
 def test_a_robot_like_its_references_is_none(robot_files):
