@@ -45,6 +45,9 @@ class Effect(ABC):
     """Kind of place where it acts, one of `KINDS`."""
     summary: ClassVar[str]
     """One line for people."""
+    telling: ClassVar[str] = ""
+    """Parameter, or what follows from some, by which people know its size; else the first one that
+    is clearly there."""
     parameters: ClassVar[tuple[Parameter, ...]]
     linear: ClassVar[bool] = False
     """Whether the trace is linear in (values - nulls), but for parameters that only shape it: these

@@ -127,8 +127,8 @@ def spans(causes: Sequence[Mapping[str, Any]]) -> list[Span]:
 
 
 def telling(group: Sequence[Mapping[str, Any]]) -> str:
-    """Name the first size of some causes of one effect that is clearly there, or else the first
-    one.
+    """Name the size of some causes of one effect that tells most: that of `Effect.telling`, else
+    the first that is clearly there, or else the first one.
 
     Args:
         group: causes, as `diagnosis.json` holds them.
@@ -139,5 +139,7 @@ def telling(group: Sequence[Mapping[str, Any]]) -> str:
     effect = EFFECTS.get(str(group[0]["effect"]))
     nulls = {} if effect is None else {p.name: p.null for p in effect.parameters}
     sizes = [span for span in spans(group) if not span.words and span.low < span.high]
+    if effect is not None and any(span.name == effect.telling for span in sizes):
+        return effect.telling
     clear = [span for span in sizes if not span.low <= nulls.get(span.name, 0.0) <= span.high]
     return next((span.name for span in (*clear, *sizes)), "")

@@ -5,7 +5,14 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hyperleg_design.report.gap.alike import FEWEST, places, span_text, spans, together
+from hyperleg_design.report.gap.alike import (
+    FEWEST,
+    places,
+    span_text,
+    spans,
+    telling,
+    together,
+)
 
 EFFECTS = ("coulomb_friction", "viscous_friction", "payload")
 CAUSES = st.lists(st.tuples(st.sampled_from(EFFECTS), st.sampled_from(["Nm", "N"])), max_size=12)
@@ -41,3 +48,16 @@ def test_a_range_reaches_from_the_least_to_the_largest() -> None:
     assert (span.name, span.unit, span.words) == ("torque", "Nm", "")
     assert span_text(span.least, span.most) == "1 to 3"
     assert span_text(0.80001, 0.80002) == "0.8"
+
+
+def test_a_wave_is_known_by_its_amplitude() -> None:
+    sizes = {
+        name: {"value": 0.1, "low": 0.09, "high": 0.11, "unit": "Nm"}
+        for name in ("cosine", "sine", "order", "amplitude")
+    }
+    wave = {"effect": "cogging", "location": "knee", "parameters": sizes}
+    assert telling([wave]) == "amplitude"
+    spring = {name: sizes["sine"] for name in ("stiffness", "preload")}
+    spring["stiffness"] = spring["stiffness"] | {"low": -0.01}
+    pull = {"effect": "joint_spring", "location": "knee", "parameters": spring}
+    assert telling([pull]) == "preload"

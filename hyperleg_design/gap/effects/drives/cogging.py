@@ -56,6 +56,7 @@ class Cogging(MotorTorque):
 
     identifier: ClassVar[str] = "cogging"
     summary: ClassVar[str] = "a motor's torque varies with its angle, some periods a turn"
+    telling: ClassVar[str] = "amplitude"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("cosine", "Nm", 0.0, -1e3, 1e3, 0.02, COSINE_SOURCE, of_strength=True),
         Parameter("sine", "Nm", 0.0, -1e3, 1e3, 0.02, "as the cosine", of_strength=True),
