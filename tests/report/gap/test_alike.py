@@ -57,7 +57,7 @@ def test_a_wave_is_known_by_its_amplitude() -> None:
     }
     wave = {"effect": "cogging", "location": "knee", "parameters": sizes}
     assert telling([wave]) == "amplitude"
-    spring = {name: sizes["sine"] for name in ("stiffness", "preload")}
+    spring = dict.fromkeys(("stiffness", "preload"), sizes["sine"])
     spring["stiffness"] = spring["stiffness"] | {"low": -0.01}
     pull = {"effect": "joint_spring", "location": "knee", "parameters": spring}
     assert telling([pull]) == "preload"
