@@ -14,6 +14,7 @@ from hyperleg_design.gap.effects.kinds import MotorTorque
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placed import MotorHooks
 from hyperleg_design.gap.effects.placing import motor_position, motor_velocity
+from hyperleg_design.gap.effects.strength import motor_strength
 from hyperleg_design.gap.effects.waves import fitted_waves, peaks
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.filtering import HIGHEST
@@ -29,6 +30,9 @@ ALWAYS = 48
 the log that their ripple stays below `HIGHEST`."""
 TRIED = 3
 """Best orders kept as starts of a search."""
+HEALTHY = 0.005
+"""Ripple that healthy motors have, over the torque that they are made for [-] (assumed: cogging and
+ripple of currents of good drives, a fraction of `COSINE_SOURCE`)."""
 COSINE_SOURCE = (
     "a few per cent of the rated torque of BLDC motors (EMBiR; MuJoCo's dcmotor `cogging`)"
 )
@@ -77,6 +81,16 @@ class Cogging(MotorTorque):
     ) -> np.ndarray:
         angle = order * motor_position(signals, motor)
         return cosine * np.cos(angle) + sine * np.sin(angle)
+
+    @override
+    def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
+        """A share of the motor's torque."""
+        return {
+            location: HEALTHY
+            * motor_strength(subject, subject.motors.index(location))
+            * np.array([1.0, 1.0, 0.0])
+            for location in self.locations(subject)
+        }
 
     @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:

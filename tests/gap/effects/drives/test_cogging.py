@@ -53,3 +53,13 @@ def test_people_read_amplitude_and_phase(pendulum):
     assert found["amplitude"] == (0.5, "Nm")
     peak = found["phase"][0]
     assert np.isclose(0.3 * np.cos(2 * peak) + 0.4 * np.sin(2 * peak), 0.5)
+
+
+def test_a_ripple_of_half_a_per_cent_is_usual(pendulum):
+    from hyperleg_design.gap.effects.strength import motor_strength
+
+    subject = pendulum(Wrong()).subject
+    (usual,) = COGGING.usual_errors(subject, 0.005).values()
+    strength = motor_strength(subject, 0)
+    np.testing.assert_allclose(usual, [0.005 * strength, 0.005 * strength, 0.0])
+    assert not any(spread.any() for spread in COGGING.nuisance_spreads(subject, 0.005).values())
