@@ -4,6 +4,8 @@ derivative; NaN stays NaN.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from hyperleg_design.gap.signals.smoothing import bridged
@@ -45,24 +47,17 @@ def lagged(values: np.ndarray, time_constant: np.ndarray, step: float) -> np.nda
     """
     from scipy.signal import lfilter
 
-    known = np.isfinite(values)
-    out = np.full((len(time_constant), len(values)), np.nan)
-    if not known.any():
-        return out
-    filled = bridged(values)
-    for row, lag in enumerate(time_constant):
+    def respond(filled: np.ndarray, lag: float) -> np.ndarray:
         if lag <= 1e-6 * step:
-            out[row] = values
-            continue
+            return filled
         ratio = step / lag
         keep = np.exp(-ratio)
         new = 1 - (1 - keep) / ratio
         old = 1 - keep - new
         settled = filled[0] - new * filled[0]
-        out[row] = lfilter([new, old], [1.0, -keep], filled, zi=[settled])[0]
-    if not known.all():
-        out[:, ~known] = np.nan
-    return out
+        return np.asarray(lfilter([new, old], [1.0, -keep], filled, zi=[settled])[0])
+
+    return _responses(values, respond, time_constant)
 
 
 def swung(
@@ -82,16 +77,25 @@ def swung(
     """
     from scipy.signal import cont2discrete, lfilter, lfilter_zi
 
-    known = np.isfinite(values)
-    out = np.full((len(square), len(values)), np.nan)
-    if not known.any():
-        return out
-    filled = bridged(values)
-    for row, (mass, late) in enumerate(zip(square.tolist(), time_constant.tolist(), strict=True)):
+    def respond(filled: np.ndarray, mass: float, late: float) -> np.ndarray:
         top, bottom, _ = cont2discrete(([1.0], [mass, late, 1.0]), step, method="foh")
         settled = lfilter_zi(top[0], bottom) * filled[0]
-        out[row] = lfilter(top[0], bottom, filled, zi=settled)[0]
-    out[:, ~known] = np.nan
+        return np.asarray(lfilter(top[0], bottom, filled, zi=settled)[0])
+
+    return _responses(values, respond, square, time_constant)
+
+
+def _responses(
+    values: np.ndarray, respond: Callable[..., np.ndarray], *parameters: np.ndarray
+) -> np.ndarray:
+    """Responses to a signal `(t,)`, one for each value of some parameters `(k,)`, `(k, t)`."""
+    known = np.isfinite(values)
+    out = np.full((len(parameters[0]), len(values)), np.nan)
+    if known.any():
+        filled = bridged(values)
+        for row, own in enumerate(zip(*(each.tolist() for each in parameters), strict=True)):
+            out[row] = respond(filled, *own)
+        out[:, ~known] = np.nan
     return out
 
 
