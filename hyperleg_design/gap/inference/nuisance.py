@@ -98,9 +98,7 @@ class NuisanceParameter:
 
     @property
     def steady(self) -> bool:
-        """Whether it is the same in all sessions: masses, rotors, and settings of drives and of
-        programs that log are.
-        """
+        """Whether it is the same in all sessions: masses, rotors, and settings of drives are."""
         return self.inertial or self.effect in (FILTERED, BACK_EMF)
 
     @property

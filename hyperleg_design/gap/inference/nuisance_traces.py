@@ -82,8 +82,7 @@ def traces(signals: Signals, errors: Sequence[NuisanceParameter]) -> list[dict[s
             by_parameter.append({b: v * error.spread for b, v in trace.items()})
             continue
         if error.effect in UNLISTED:
-            unlisted = _OWN.get(error.effect, _told)
-            by_parameter.append(unlisted(signals, error))
+            by_parameter.append(_OWN.get(error.effect, _told)(signals, error))
             continue
         effect = EFFECTS[error.effect]
         alone = effect.nuisance_trace(signals, error.location, error.parameter, error.spread)
@@ -129,10 +128,7 @@ def _speeds(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]
         speed = -signals.acceleration @ subject.joint_from_motor[:, motor]
     else:
         speed = first_derivative(belt.transmitted(signals, motor), signals.step)
-    return {
-        residual_name: rows[0]
-        for residual_name, rows in turned(signals, motor, error.spread * speed[None]).items()
-    }
+    return _alone(turned(signals, motor, error.spread * speed[None]))
 
 
 def _stepped(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
@@ -195,10 +191,7 @@ def _asked(signals: Signals, torque: np.ndarray) -> dict[str, np.ndarray]:
             control[:, motor] = torque[:, motor]
         else:
             changes[motor] = torque[None, :, motor]
-    traced = {
-        residual_name: rows[0]
-        for residual_name, rows in before_measurement(signals, changes).items()
-    }
+    traced = _alone(before_measurement(signals, changes))
     return traced | ({"control": control} if "control" in signals.residual else {})
 
 
@@ -211,8 +204,12 @@ def _back_emf(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarra
     if not is_commanded(signals, motor) or np.isfinite(subject.supply[motor]):
         return {}
     missing = -error.spread * (signals.acceleration @ subject.joint_from_motor[:, motor])
-    traced = before_measurement(signals, {motor: missing[None]})
-    return {residual_name: rows[0] for residual_name, rows in traced.items()}
+    return _alone(before_measurement(signals, {motor: missing[None]}))
+
+
+def _alone(trace: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The only row of a trace `(1, t, columns)` in each residual."""
+    return {residual_name: rows[0] for residual_name, rows in trace.items()}
 
 
 def _told(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:

@@ -14,7 +14,6 @@ from hyperleg_design.gap.effects.kinds import MotorTorque
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placed import MotorHooks
 from hyperleg_design.gap.effects.placing import motor_position, motor_velocity
-from hyperleg_design.gap.effects.strength import motor_strength
 from hyperleg_design.gap.effects.waves import fitted_waves, peaks
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.filtering import HIGHEST
@@ -85,12 +84,8 @@ class Cogging(MotorTorque):
     @override
     def usual_errors(self, subject: Subject, step: float) -> Mapping[str, np.ndarray]:
         """A share of the motor's torque."""
-        return {
-            location: HEALTHY
-            * motor_strength(subject, subject.motors.index(location))
-            * np.array([1.0, 1.0, 0.0])
-            for location in self.locations(subject)
-        }
+        shares = [HEALTHY, HEALTHY, 0.0]
+        return {place: self._sized(shares, place, subject) for place in self.locations(subject)}
 
     @override
     def usual(self, location: str, subject: Subject) -> np.ndarray:

@@ -59,11 +59,11 @@ BAND = 0.2
 
 CHOSEN = 0.5
 """From which a choice between 0 and 1 is 1."""
-LEAST_SHARE = 1e-3
-"""Least inertia of a joint where its posture is unknown, over the largest one in the log [-]."""
 BEHIND_BAND = 15.0
 """The same of a belt with friction at its joint [Hz]; above it, noise of the torque would make a
 joint at rest turn round (assumed)."""
+LEAST_SHARE = 1e-3
+"""Least inertia of a joint where its posture is unknown, over the largest one in the log [-]."""
 BRISTLES = 3e-3
 """Way over which a joint behind its belt turns its friction over [rad]; assumed: as well as its
 place is known."""
@@ -199,12 +199,13 @@ def stretch(
             default nowhere.
     """
     late = 2 * damping_ratio * np.sqrt(rotor(signals.subject, motor) * compliance)
-    moved = np.asarray(compliance[:, None] * lagged(through, late, signals.step))
-    if swings is not None and (swings := swings & (compliance > 0)).any():
+    swings = np.zeros(len(late), bool) if swings is None else swings & (compliance > 0)
+    moved = np.empty((len(late), len(through)))
+    moved[~swings] = lagged(through, late[~swings], signals.step)
+    if swings.any():
         square = compliance[swings] * np.mean(carried(signals, motor))
-        moved[swings] = compliance[swings, None] * swung(
-            through, square, late[swings], signals.step
-        )
+        moved[swings] = swung(through, square, late[swings], signals.step)
+    moved *= compliance[:, None]
     if stiffening is not None and stiffening.any():
         bend = stiffening / signals.subject.motor_over_joint(motor)
         stiff = bend > 0

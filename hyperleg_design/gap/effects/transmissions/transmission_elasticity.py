@@ -84,9 +84,10 @@ class TransmissionElasticity(GearEffect):
     def _left(self, signals: Signals, motor: int, *values: Any) -> dict[str, np.ndarray]:
         compliance, damping_ratio, side, behind, stiffening = values
         load, transmitted = belt.load(signals, motor), belt.transmitted(signals, motor)
-        at_rotor = side >= belt.CHOSEN
-        moved = belt.stretch(signals, load, motor, compliance, damping_ratio, stiffening, at_rotor)
-        bent = (stiffening > 0) | (behind >= belt.CHOSEN)
+        at_rotor, bent = side >= belt.CHOSEN, (stiffening > 0) | (behind >= belt.CHOSEN)
+        moved = belt.stretch(
+            signals, load, motor, compliance, damping_ratio, stiffening, at_rotor & ~bent
+        )
         for rubs in (True, False):
             if (mine := bent & at_rotor & ((behind >= belt.CHOSEN) == rubs)).any():
                 given = belt.given(signals, motor, rubs=rubs)

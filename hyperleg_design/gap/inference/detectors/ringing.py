@@ -21,9 +21,7 @@ from hyperleg_design.gap.signals.smoothing import bridged
 AROUND = 0.2
 """Half the width of the band around that frequency in which motion is compared, over it [-]."""
 WINDOW = 1024
-"""Most ticks in a window of the spectrum in which the loudest frequency is looked up."""
-
-
+"""Most ticks in a window of a spectrum."""
 MOTION, TRANSMISSION = HEARD = "motion", "transmission"
 """Residuals that are listened to: of the torque of joints, and of the speed of rotors over that of
 their joints."""
@@ -77,7 +75,7 @@ def _loudest_frequency(log: FilteredLog, place: tuple[str, str]) -> float:
     """Frequency above its cutoff at which a residual is largest [Hz]."""
     row, _, values = next(entry for entry in _heard(log) if _place(entry[0]) == place)
     step = log.signals.step
-    frequency, density = welch(values, 1 / step, nperseg=min(WINDOW, len(values)))
+    frequency, density = _spectrum(values, step)
     above = frequency >= min(row.cutoff, 0.25 / step)
     return float(frequency[above][np.argmax(density[above])])
 
@@ -103,10 +101,15 @@ def _motion_at(log: FilteredLog, frequency: float) -> dict[str, float]:
         position = recording.column(f"position/{joint}")
         if np.isfinite(position).any():
             speed = np.diff(bridged(position))
-            at, density = welch(speed, 1 / recording.step, nperseg=min(WINDOW, len(speed)))
+            at, density = _spectrum(speed, recording.step)
             around = np.abs(at / frequency - 1) < AROUND
             sizes[joint] = float(np.sqrt(density[around].sum()))
     return sizes
+
+
+def _spectrum(values: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies [Hz], and the density of values `(t,)` at each."""
+    return welch(values, 1 / step, nperseg=min(WINDOW, len(values)))
 
 
 def _densities(log: FilteredLog) -> dict[tuple[str, str], float]:
@@ -126,7 +129,7 @@ def _mean_density(values: np.ndarray, mask: np.ndarray, cutoff: float, step: flo
     """As `white_density`, but the mean: a rotor that hits both ends of its play at one rate is a
     line, and other lines of its speed over that of its joints are as loud in the references.
     """
-    frequency, density = welch(values, 1 / step, nperseg=min(WINDOW, len(values)))
+    frequency, density = _spectrum(values, step)
     above = (frequency >= cutoff) & (frequency <= HIGHEST / step)
     return float(density[above].mean()) if mask.any() and above.any() else 0.0
 
