@@ -17,7 +17,6 @@ from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scale_fit import STEPS, first_scales, fitted
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, Traces
-from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypotheses.cause_prior import log_prior
 from hyperleg_design.gap.inference.hypotheses.hypothesis import (
     Candidate,
@@ -30,7 +29,8 @@ from hyperleg_design.gap.inference.hypotheses.hypothesis import (
 )
 from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
 from hyperleg_design.gap.inference.hypotheses.proposals import Proposal
-from hyperleg_design.gap.inference.interactions import Acting, acting_on, beside, values_of
+from hyperleg_design.gap.inference.interactions import Acting, acting_on, values_of
+from hyperleg_design.gap.inference.interactions import beside as samples_beside
 from hyperleg_design.gap.inference.linearisation import linearise
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.samples import Samples
@@ -117,7 +117,7 @@ class HypothesisFit:
             scales = limited_scales(self.evidence, current.scales, self.rules)
         everywhere = proposal.standing or self.only is not None
         others = acting_on(effect, proposal.standing, current.acting)
-        samples = self._beside(effect, everywhere, others)
+        samples = self.beside(effect, everywhere, others)
         best: tuple[float, Cause] | None = None
         for _ in range(self.rules.search.steps):
             cause = linearise(samples, effect, proposal.location, values)
@@ -151,73 +151,44 @@ class HypothesisFit:
         paid = sum(term.log(solution.theta[place]) for place, term in stack.groups)
         return solution.gain - solution.occam + paid
 
-    def relinearised(self, hypothesis: Hypothesis) -> Hypothesis:
-        """Linearise the causes of a hypothesis again at their estimates, and beside the causes that
-        change what they act on (`interactions`), until both agree: from the estimates as they are,
-        and from those at limited scales.
+    def where_linearised(self, hypothesis: Hypothesis) -> Hypothesis:
+        """Fit a hypothesis with its causes at the values at which they are linearised: far from
+        there, what they leave over is not what a linear fit says.
 
         Args:
-            hypothesis: fitted to causes that are linearised elsewhere.
+            hypothesis: fitted.
+
+        Returns:
+            The same where causes are linearised at their estimates.
         """
-        begun, limited = [hypothesis], self._at_limited_scales(hypothesis)
-        for _ in range(self.rules.search.steps):
-            candidates = self._relinearised_once(limited)
-            if candidates is None:
-                break
-            limited = self._at_limited_scales(replace(hypothesis, candidates=candidates))
-        if limited.candidates is not hypothesis.candidates:
-            begun.append(self.fit(limited.candidates, hypothesis.scales))
-        agreed = (self._agreed(beginning) for beginning in begun)
-        return max(agreed, key=lambda hypothesis: hypothesis.score)
-
-    def _agreed(self, hypothesis: Hypothesis) -> Hypothesis:
-        """A hypothesis that is fitted to causes linearised at their estimates."""
-        for _ in range(self.rules.search.steps):
-            candidates = self._relinearised_once(hypothesis)
-            if candidates is None:
-                break
-            hypothesis = self.fit(candidates, hypothesis.scales)
-        return hypothesis
-
-    def _at_limited_scales(self, hypothesis: Hypothesis) -> Hypothesis:
-        """Sizes of a hypothesis at limited scales, at which nothing hides what causes explain."""
-        scales = limited_scales(self.evidence, hypothesis.scales, self.rules, True)
-        stack = Stack.of(hypothesis.causes, self.evidence.weight)
+        causes, part = hypothesis.causes, hypothesis.parts
+        least, place = self.rules.search.converged, range(len(hypothesis.causes))
+        bent = [i for i in place if not causes[i].linear]
+        if all(
+            are_near(hypothesis.values(i), causes[i].values, causes[i].usual, least) for i in bent
+        ):
+            return hypothesis
+        stack = Stack.of(causes, self.evidence.weight)
         crossing = Crossing.of(self.evidence.channels, stack.rows)
-        solution = self.at_scales(stack, crossing, scales)
-        return replace(hypothesis, theta=solution.theta, covariance=solution.covariance)
+        low, high = stack.low.copy(), stack.high.copy()
+        for i in bent:
+            low[part[i]] = high[part[i]] = (causes[i].values - causes[i].nulls) / causes[i].usual
+        stack = replace(stack, low=low, high=high)
+        fit = self._round(
+            stack, crossing, self._begun(stack, crossing, hypothesis.scales), 2, STEPS
+        )
+        reached = self._likelihood(stack, crossing, fit)
+        own = replace(hypothesis, theta=fit.solution.theta, scales=fit.scales, log_evidence=reached)
+        return replace(own, log_prior=log_prior(own, self.evidence, self.rules, self.count))
 
-    def _relinearised_once(self, hypothesis: Hypothesis) -> tuple[Candidate, ...] | None:
-        """Candidates linearised at their estimates, on what others leave; None where they are
-        already.
-        """
-        moved = False
-        acting, candidates, place = hypothesis.acting, [], 0
-        least = self.rules.search.converged
-        for candidate in hypothesis.candidates:
-            causes = []
-            for cause in candidate.causes:
-                at = cause.values if cause.linear else acting[place].values
-                place += 1
-                effect = WEIGHED[cause.effect]
-                others = acting_on(effect, cause.standing, acting)
-                wanted = values_of(others)
-                if are_near(at, cause.values, cause.usual, least) and are_near(
-                    wanted, cause.before, 1.0, least
-                ):
-                    causes.append(cause)
-                    continue
-                samples = self._beside(effect, cause.standing, others)
-                again = linearise(samples, effect, cause.location, at)
-                if again is not None:
-                    cause, moved = self._instead(cause, again, wanted), True
-                causes.append(cause)
-            candidates.append(replace(candidate, causes=tuple(causes)))
-        return tuple(candidates) if moved else None
-
-    def _beside(self, effect: Effect, everywhere: bool, others: Sequence[Acting]) -> Samples:
+    def beside(self, effect: Effect, everywhere: bool, others: Sequence[Acting]) -> Samples:
         """Samples that show an effect, in all logs or in those under test, as others leave them;
         the last ones are kept, as many effects are tried beside one hypothesis.
+
+        Args:
+            effect: the effect.
+            everywhere: whether it acts in all logs.
+            others: causes that change what it acts on.
         """
         samples = self.evidence.samples if everywhere else self.evidence.tests
         if not others:
@@ -226,23 +197,9 @@ class HypothesisFit:
         wanted = tuple(c[:3] for c in others), values_of(others)
         known, left = self._left.get(kind, (None, samples))
         if known != wanted:
-            left = beside(samples, effect, others, len(self.evidence.signals))
+            left = samples_beside(samples, effect, others, len(self.evidence.signals))
             self._left[kind] = wanted, left
         return left
-
-    def _instead(self, cause: Cause, again: Cause, before: tuple[float, ...]) -> Cause:
-        """A cause as it is linearised again; where it gains nothing by scaling torques, so does
-        this.
-        """
-        again = self.evidence.on_all_samples(again, cause.standing)
-        shows = {term.row: term.shows for term in cause.factors if isinstance(term, Factor)}
-        factors = tuple(
-            replace(term, shows=shows.get(term.row, term.shows))
-            if isinstance(term, Factor)
-            else term
-            for term in again.factors
-        )
-        return replace(again, factors=factors, before=before)
 
     def at_scales(
         self,
@@ -298,9 +255,12 @@ class HypothesisFit:
 
     def _first_round(self, stack: Stack, crossing: Crossing, scales: Sequence[Scales]) -> _Fitted:
         """Causes at given scales, and after one round."""
+        return self._round(stack, crossing, self._begun(stack, crossing, scales), 2, STEPS)
+
+    def _begun(self, stack: Stack, crossing: Crossing, scales: Sequence[Scales]) -> _Fitted:
+        """Causes at given scales."""
         solution = self.at_scales(stack, crossing, scales)
-        begun = _Fitted(tuple(scales), solution, np.ones(crossing.count, bool))
-        return self._round(stack, crossing, begun, 2, STEPS)
+        return _Fitted(tuple(scales), solution, np.ones(crossing.count, bool))
 
     def _round(
         self,

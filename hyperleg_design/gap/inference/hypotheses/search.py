@@ -27,6 +27,7 @@ from hyperleg_design.gap.inference.hypotheses.hypothesis import (
 from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit, are_near
 from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
 from hyperleg_design.gap.inference.hypotheses.proposals import Proposal, Proposer
+from hyperleg_design.gap.inference.hypotheses.relinearisation import relinearised
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.threads import spread
 
@@ -113,7 +114,7 @@ class Search:
         """
         for hypothesis in sorted(others, key=lambda other: -other.score):
             if hypothesis.score > current.score:
-                hypothesis = self.fits.relinearised(hypothesis)
+                hypothesis = relinearised(self.fits, hypothesis)
             self.fitted[hypothesis.names] = hypothesis
             current = max(current, hypothesis, key=lambda other: other.score)
         return current

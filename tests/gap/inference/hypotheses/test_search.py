@@ -12,6 +12,7 @@ import pytest
 
 from hyperleg_design.gap.inference.effect_traces import NotJudged, traces_of
 from hyperleg_design.gap.inference.endogenous import Factor
+from hyperleg_design.gap.inference.hypotheses import search as looking
 from hyperleg_design.gap.inference.hypotheses.hypothesis import EVERYWHERE, Candidate
 from hyperleg_design.gap.inference.hypotheses.search import Search, without_gain_from_torques
 from hyperleg_design.gap.inference.rules import InferenceRules
@@ -144,7 +145,9 @@ def test_causes_that_act_together_are_looked_for_behind_a_torque_of_any_shape(ro
     assert search._without_unlisted(listed) is listed
 
 
-def test_two_causes_that_gain_only_beside_one_another_are_looked_for_together(search, result):
+def test_two_causes_that_gain_only_beside_one_another_are_looked_for_together(
+    search, result, monkeypatch
+):
     best = result.best
     looked = Search.__new__(Search)
     vars(looked).update(vars(search))
@@ -164,7 +167,7 @@ def test_two_causes_that_gain_only_beside_one_another_are_looked_for_together(se
     both = scored(one, "viscous_friction", 3.0)
     current = scored(best, "odd_torque", 1.0)
     looked.extended, looked._known = extended, lambda _: best
-    looked.fits = SimpleNamespace(relinearised=lambda hypothesis: hypothesis)
+    monkeypatch.setattr(looking, "relinearised", lambda _, hypothesis: hypothesis)
     looked.fitted = {}
     assert looked._without_unlisted(current) is both
     both = scored(one, "viscous_friction", 1.5)
