@@ -40,6 +40,9 @@ class Posterior:
     """The most probable hypothesis."""
     order: tuple[int, ...]
     """Its candidates that are faults and no `standing` ones, the one that explains most first."""
+    small: tuple[int, ...]
+    """Its candidates that are faults and no `standing` ones, but close so little of the gap beside
+    those in `order` that they are none."""
     standing: tuple[int, ...]
     """Its candidates that act in the references, too, likewise: what the model lacks."""
     probability: dict[Name, float]
@@ -90,12 +93,16 @@ def posterior_of(
     closed = size.closed
     remainder = float(np.clip(1 - closed, 0.0, 1.0)) if acting else 0.0
     ranked = [place for place in ranked if place not in odd]
-    order = tuple(place for place in ranked if not best.candidates[place].standing)
+    order, small = _closing(
+        best, [place for place in ranked if not best.candidates[place].standing], size, rules
+    )
     standing = tuple(place for place in ranked if best.candidates[place].standing)
     rivals = _rivals(result, best)
     if not order:
         verdict = "unknown" if acting else "none"
-        return Posterior(verdict, best, (), standing, probability, rivals, (), odd, 0.0, remainder)
+        return Posterior(
+            verdict, best, (), (), standing, probability, rivals, (), odd, 0.0, remainder
+        )
     sets = tuple(_alike(result, best, place, rules) for place in order)
     main = closed if acting else 1.0
     verdict = "ambiguous" if any(sets) else "explained"
@@ -106,8 +113,44 @@ def posterior_of(
         for name, p in probability.items()
     }
     return Posterior(
-        verdict, best, order, standing, probability, rivals, sets, odd, closed, remainder
+        verdict, best, order, small, standing, probability, rivals, sets, odd, closed, remainder
     )
+
+
+def _closing(
+    best: Hypothesis, places: Sequence[int], size: GapSize, rules: InferenceRules
+) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Of some candidates those that close a part of the gap, and those that close next to nothing
+    beside them.
+    """
+    closed = {
+        place: max(
+            closed_by(best, cause, size)
+            for cause, (_, own) in enumerate(expanded(best.candidates))
+            if own is best.candidates[place]
+        )
+        for place in places
+    }
+    closing = tuple(place for place in places if closed[place] >= rules.posterior.least_closed)
+    if not closing:
+        return tuple(places), ()
+    return closing, tuple(place for place in places if place not in closing)
+
+
+def closed_by(hypothesis: Hypothesis, place: int, size: GapSize) -> float:
+    """Compute the share of the gap that one cause closes.
+
+    Args:
+        hypothesis: the most probable one.
+        place: index of the cause among its causes.
+        size: of the gap by that hypothesis.
+
+    Returns:
+        The share, see `GapSize.closed_by`.
+    """
+    cause = hypothesis.causes[place]
+    trace = cause.trace(hypothesis.theta[hypothesis.parts[place]])
+    return size.closed_by(trace, standing=cause.standing)
 
 
 def _stated(candidate: Candidate) -> list[Name]:

@@ -28,7 +28,7 @@ from hyperleg_design.gap.inference.hypotheses.hypothesis import (
 from hyperleg_design.gap.inference.hypotheses.reference_differences import Difference
 from hyperleg_design.gap.inference.hypotheses.search import Result
 from hyperleg_design.gap.inference.intervals import intervals
-from hyperleg_design.gap.inference.posterior import Posterior, expanded
+from hyperleg_design.gap.inference.posterior import Posterior, closed_by, expanded
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline.unexplained import Unexplained
 from hyperleg_design.gap.results.diagnosis import (
@@ -177,8 +177,10 @@ class Answer:
             closed = self.closed_by(hypothesis, place)
             sizes = intervals(cause, values, deviation, subject, self.torque_error)
             sized.append((stands, Named(cause.effect, cause.location, probability, closed, sizes)))
-        clear_ones = [named for stands, named in sized if stands >= self.rules.posterior.clear]
-        return clear_ones or [max(sized, key=lambda entry: entry[0])[1]]
+        rules = self.rules.posterior
+        clear_ones = [named for stands, named in sized if stands >= rules.clear]
+        closing = [named for named in clear_ones if named.closed >= rules.least_closed]
+        return closing or clear_ones or [max(sized, key=lambda entry: entry[0])[1]]
 
     @property
     def torque_error(self) -> float:
@@ -198,9 +200,7 @@ class Answer:
         """
         if hypothesis is not self.posterior.hypothesis or not self.posterior.hypothesis.causes:
             return 0.0
-        cause = hypothesis.causes[place]
-        trace = cause.trace(hypothesis.theta[hypothesis.parts[place]])
-        return max(self.size.closed_by(trace, standing=cause.standing), WORST)
+        return max(closed_by(hypothesis, place, self.size), WORST)
 
     def rivals(self) -> tuple[Named, ...]:
         """Other candidates, most probable first; one an effect and place, as the same effect at all
@@ -294,6 +294,7 @@ class Answer:
             for cause, description in self.unexplained.unlisted_causes
             if cause.standing
         )
+        texts += self.small()
         texts += self.ends()
         if has_placeholders(self.evidence.signals[0].subject):
             texts.append(
@@ -306,6 +307,19 @@ class Answer:
                 "usually"
             )
         return tuple(dict.fromkeys(texts))
+
+    def small(self) -> list[str]:
+        """Causes that close too little to be any, in words."""
+        hypothesis, texts = self.posterior.hypothesis, []
+        for place in self.posterior.small:
+            named = self.named(hypothesis, hypothesis.candidates[place])
+            most = max(named, key=lambda cause: cause.closed)
+            places, share = ", ".join(cause.location for cause in named), max(most.closed, 0.0)
+            texts.append(
+                f"{most.effect} at {places} fits, too, but closes {100 * share:.0f} % of the gap "
+                "there: too little for a cause"
+            )
+        return texts
 
     def ends(self) -> list[str]:
         """Sizes of causes that are at an end of the range that is tried, in words."""

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.detectors.sinking import SINKS
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.inference.detectors.slipping import SLIPS
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
+from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.diagnosis import (
     MOST_RIVALS,
     Diagnosis,
@@ -34,7 +36,7 @@ def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot], certain: float) -> 
     Args:
         diagnosis: the diagnosis so far.
         feet: effects of the ground under some feet.
-        certain: probability of what is certain, `PosteriorRules.most_certain`.
+        certain: probability of what is certain, `PosteriorRules.highest`.
 
     Returns:
         The diagnosis with them.
@@ -67,6 +69,30 @@ def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot], certain: float) -> 
     shares = (foot.weight * foot.size**2 / (before * weight) for foot in feet)
     where = (Place(o.foot, "foot", "all", share) for o, share in zip(feet, shares, strict=True))
     return _instead(diagnosis, causes, gap, tuple(where))
+
+
+def misplaced_feet(diagnosis: Diagnosis, subject: Subject) -> set[str]:
+    """Find the feet that are elsewhere than their logs say, as a cause is the zero of an encoder of
+    their leg.
+
+    Args:
+        diagnosis: the diagnosis so far.
+        subject: the robot.
+
+    Returns:
+        Names of feet.
+    """
+    tree = subject.tree
+    joints = {
+        subject.joints.index(cause.location)
+        for cause in diagnosis.causes
+        if EFFECTS[cause.effect].of_zeros
+    }
+    return {
+        subject.feet[pad.foot]
+        for pad in subject.pads
+        if joints.intersection(tree.chain(int(tree.link_joint[pad.link])))
+    }
 
 
 def _with_part(diagnosis: Diagnosis, cause: Named) -> Diagnosis:

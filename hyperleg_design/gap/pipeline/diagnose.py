@@ -17,7 +17,7 @@ from hyperleg_design.gap.inference.detectors.slipping import slips
 from hyperleg_design.gap.inference.effect_traces import places
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.logs.log import Log
-from hyperleg_design.gap.pipeline.detected_causes import of_feet
+from hyperleg_design.gap.pipeline.detected_causes import misplaced_feet, of_feet
 from hyperleg_design.gap.pipeline.judge import judge_signals
 from hyperleg_design.gap.results.diagnosis import Diagnosis
 from hyperleg_design.gap.signals.signals import Signals
@@ -153,12 +153,18 @@ def _beside(
     rules: InferenceRules,
 ) -> Diagnosis:
     """Add slippery or soft ground to a diagnosis, where it explains at least `main_part` of the
-    error on logs, or halves of one, from which it was not estimated.
+    error on logs, or halves of one, from which it was not estimated. Where an encoder of a leg is
+    named, nobody knows how its foot moves.
     """
-    least, certain = rules.posterior.main_part, rules.posterior.most_certain
+    least, certain = rules.posterior.main_part, rules.posterior.highest(bool(references))
+    misplaced = misplaced_feet(diagnosis, signals[0].subject)
     for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
         if effects is None or effect in effects:
             grounds = tell(signals, references)
-            foretold = tuple(ground for ground in grounds if ground.closed >= least)
+            foretold = tuple(
+                ground
+                for ground in grounds
+                if ground.closed >= least and ground.foot not in misplaced
+            )
             diagnosis = of_feet(diagnosis, foretold, certain)
     return diagnosis

@@ -24,6 +24,7 @@ def cause(effect, place, standing=False):
         shape=np.zeros(1, bool),
         low=np.full(1, -9.0),
         high=np.full(1, 9.0),
+        trace=lambda theta: theta,
     )
 
 
@@ -38,7 +39,8 @@ def quiet(noise, rules):
     return 0.0, -9.0
 
 
-def answer(*hypotheses, closed=1.0, usual=None, references=()):
+def answer(*hypotheses, closed=1.0, usual=None, references=(), alone=None):
+    """`alone`: what each cause closes, by its size."""
     ranked = tuple(sorted(hypotheses, key=lambda one: -one.score))
     nothing_tested = {
         "bands_tested": np.zeros(0, int),
@@ -46,7 +48,12 @@ def answer(*hypotheses, closed=1.0, usual=None, references=()):
     }
     channels = (SimpleNamespace(referenced=False, noisy=quiet, **nothing_tested),)
     evidence = SimpleNamespace(channels=channels, references=references, usual=usual or {})
-    return posterior_of(Result(ranked, ()), evidence, SimpleNamespace(closed=closed), RULES)
+
+    def closed_by(trace, *, standing):
+        return 1.0 if alone is None else alone[float(trace[0])]
+
+    size = SimpleNamespace(closed=closed, closed_by=closed_by)
+    return posterior_of(Result(ranked, ()), evidence, size, RULES)
 
 
 def test_nothing_is_none():
@@ -90,6 +97,21 @@ def test_rivals_stand_in_the_place_of_one_of_several():
         zip((found.hypothesis.candidates[i].name for i in found.order), found.alike, strict=True)
     )
     assert sets == {("a", "x", False): (("b", "x", False),), ("c", "y", False): ()}
+
+
+@pytest.mark.parametrize(("share", "named"), [(0.02, 1), (0.21, 2)])
+def test_what_closes_next_to_nothing_beside_another_is_no_cause(share, named):
+    both = hypothesis(40.0, ("a", "x"), ("b", "y"))
+    found = answer(hypothesis(0.0), both, alone={2.0: 1.0, 1.0: share})
+    assert (found.verdict, len(found.order)) == ("explained", named)
+    assert found.order[0] == 0
+    assert found.small == ((1,) if named == 1 else ())
+
+
+def test_of_causes_that_all_close_little_each_is_named():
+    both = hypothesis(40.0, ("a", "x"), ("b", "y"))
+    found = answer(hypothesis(0.0), both, alone={2.0: 0.05, 1.0: 0.02})
+    assert (len(found.order), found.small) == (2, ())
 
 
 def test_what_stands_in_the_references_is_no_change():

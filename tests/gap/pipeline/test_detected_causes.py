@@ -8,9 +8,10 @@ from diagnosed import run
 
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
 from hyperleg_design.gap.inference.rules import PosteriorRules
-from hyperleg_design.gap.pipeline.detected_causes import of_feet
+from hyperleg_design.gap.pipeline.detected_causes import misplaced_feet, of_feet
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.results.diagnosis import Named, Place, Value
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.report.gap.text import diagnosis_text
 
 CERTAIN = PosteriorRules.most_certain
@@ -64,6 +65,14 @@ def test_slippery_ground_is_one_cause_more_beside_others_and_is_not_named_twice(
     assert names(told.causes) == [("coulomb_friction", "hip"), *BOTH]
     assert of_feet(told, SLIDING, CERTAIN) is told
     assert of_feet(none, (), CERTAIN) is none
+
+
+def test_a_foot_beyond_an_encoder_that_is_named_is_elsewhere_than_its_logs_say(none):
+    subject = load_subject("hyperleg")
+    named = replace(none, causes=(Named("encoder_offset", "left_knee", 0.9, 0.8, {}), OTHER))
+    assert misplaced_feet(named, subject) == {"left_foot"}
+    rubs = replace(none, causes=(Named("coulomb_friction", "left_knee", 0.9, 0.8, {}),))
+    assert misplaced_feet(rubs, subject) == set()
 
 
 def test_an_unknown_gap_under_feet_that_slide_is_theirs_and_another_is_not(none):

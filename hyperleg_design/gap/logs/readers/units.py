@@ -36,6 +36,8 @@ FACTORS = {
     "N": {"n": 1.0, "kn": 1e3},
 }
 """By SI unit of a signal: what a file may use instead, in lower letters, and its factor."""
+SLIDING = {"rad": "m", "rad/s": "m/s", "Nm": "N"}
+"""SI unit of a joint that slides, by that of one that turns."""
 _HEADER = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\])]*)[\])]\s*$")
 
 
@@ -53,7 +55,8 @@ def split_header(header: str) -> tuple[str, str]:
 
 
 def factor(column: str, given: str, where: str) -> float:
-    """Look up the factor from a unit to that of the log format.
+    """Look up the factor from a unit to that of the log format. Signals of joints may have the
+    units of joints that turn or that slide, as a log knows nothing of its robot.
 
     Args:
         column: whose unit it is.
@@ -66,7 +69,8 @@ def factor(column: str, given: str, where: str) -> float:
     Raises:
         InputError: not a unit of this signal.
     """
-    factors = FACTORS[unit(column)]
+    own = unit(column)
+    factors = FACTORS[own] | (FACTORS[SLIDING[own]] if own in SLIDING else {})
     if not given:
         return 1.0
     unit_factor = factors.get(given.strip().lower().replace(" ", ""))

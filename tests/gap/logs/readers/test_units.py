@@ -29,6 +29,10 @@ def test_headers(header, found):
         ("accelerometer/x", "g", 9.80665),
         ("battery_voltage", "", 1.0),
         ("joint_torque/knee", "Nm", 1.0),
+        ("position/slide", "mm", 1e-3),
+        ("position_target/slide", "m", 1.0),
+        ("velocity/slide", "m/s", 1.0),
+        ("motor_torque/slide", "kN", 1e3),
     ],
 )
 def test_factors(column, unit, value):
