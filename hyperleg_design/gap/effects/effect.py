@@ -68,7 +68,8 @@ class Effect(ABC):
     driver: ClassVar[str] = ""
     """Field of `Signals` that drives it, if any."""
     unseen: ClassVar[float] = 0.0
-    """Log prior odds for it where no log has its driver: a model of that fits much [nat]."""
+    """Log prior odds for it where no log has what shows it (`driven`): a model of that fits much
+    [nat]."""
     described: ClassVar[bool] = False
     """Whether a robot's model describes it, so that there may also be less of it than described."""
     rough: ClassVar[Mapping[str, float]] = {}
@@ -102,6 +103,14 @@ class Effect(ABC):
     """One of `NUISANCE_TORQUES`: by which torques its nuisance parameters leave their traces."""
     look_alikes: ClassVar[Mapping[str, str]] = {}
     """Effects that are taken for this one most, and what separates them; one of two may say so."""
+
+    def driven(self, signals: Signals) -> bool:
+        """Tell whether a log has what shows the effect by itself: its driver, if it has one.
+
+        Args:
+            signals: the conditioned log.
+        """
+        return not self.driver or getattr(signals, self.driver) is not None
 
     @abstractmethod
     def locations(self, subject: Subject) -> tuple[str, ...]:

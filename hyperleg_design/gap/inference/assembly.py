@@ -157,7 +157,7 @@ def evidence_of(
     rubbing = replace(subject, coulomb=dry_friction(healthy), viscous=viscous_friction(healthy))
 
     errors = nuisance.nuisance_parameters(subject, tests[0].step, bool(references), rubbing)
-    errors.sort(key=lambda error: not error.steady)
+    errors.sort(key=lambda error: (not error.known, not error.steady))
     zeros = Zeros.of(tests, references, rubbing)
     sets = [log_set(tests, errors, zeros, rules, tested=True)]
     if all(row.residual_name in OF_SENSORS for row in sets[0].samples.rows):

@@ -41,8 +41,7 @@ class Cause:
     factors: tuple[Factor | Shrinking, ...] = ()
     """How it scales the torques that the residual trusts, or noise."""
     unseen: bool = False
-    """Whether no log has the signal that drives it, a voltage or a temperature, so that it is
-    modelled."""
+    """Whether no log has what shows it by itself, see `Effect.driven`."""
     beyond: int = 1
     """Joints in a row that its link carries, see `Mechanism.beyond`."""
     standing: bool = False

@@ -67,9 +67,7 @@ def linearise(samples: Samples, effect: Effect, location: str, values: np.ndarra
     masses = (float(payload[at][0]) for at in payload if _same_place(subject, at, location))
     declared = max(masses, default=0.0)
     scaled = factors_of(samples, effect.identifier, location, usual, values)
-    unseen = bool(effect.driver) and all(
-        getattr(s.signals, effect.driver) is None for s in samples.filtered_logs
-    )
+    unseen = not any(effect.driven(signals) for signals in logs)
     return Cause(
         effect.identifier,
         location,

@@ -92,7 +92,7 @@ def log_set(
 
     Args:
         signals: conditioned logs.
-        errors: nuisance parameters, steady ones first.
+        errors: nuisance parameters, known ones first, then steady ones.
         zeros: of encoders that are set where joints hang.
         rules: of the inference.
         tested: whether these are the logs under test.
@@ -112,6 +112,7 @@ def log_set(
         for row, traces in nuisance_traces.columns(filtered, errors).items():
             columns[:, places[row]] = traces
     columns[[error.inertial for error in errors]] *= samples.felt
+    known = len(apart) + sum(error.known for error in errors)
     steady = len(apart) + sum(error.steady for error in errors)
     columns = np.concatenate([apart, columns])
-    return LogSet(filtered_logs, samples, floors, columns, len(apart), steady, tested)
+    return LogSet(filtered_logs, samples, floors, columns, known, steady, tested)

@@ -20,8 +20,9 @@ from hyperleg_design.gap.effects.strength import motor_strength
 from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.gap.model.subject import Subject
 
-FORCES_SCALED, OF_FORCES = "contact_scale", 0.01
-"""Relative error of the force sensors under a foot, and its deviation [-]."""
+FORCES_SCALED, OF_FORCES = "contact_scale", 0.005
+"""Relative error of the force sensors under a foot, and its deviation [-] (assumed: load cells are
+0.1 to 0.5 % off)."""
 TURNOVER, SWUNG = "friction_turnover", "friction_in_chatter"
 """Errors of the friction model where a joint reverses. The model's friction follows the speed as
 tanh(v / v_s). That of a robot reverses at once, or over the way on which bristles bend, and in a
@@ -98,8 +99,17 @@ class NuisanceParameter:
 
     @property
     def steady(self) -> bool:
-        """Whether it is the same in all sessions: masses, rotors, and settings of drives are."""
-        return self.inertial or self.effect in (FILTERED, BACK_EMF)
+        """Whether it is the same in all sessions: masses, rotors, settings of drives, and gains of
+        force sensors are.
+        """
+        return self.inertial or self.known or self.effect in (FILTERED, BACK_EMF)
+
+    @property
+    def known(self) -> bool:
+        """Whether no scale of a channel enlarges its deviation: contact forces of which masses of
+        nothing and a biased IMU leave a residual without noise would hide every load.
+        """
+        return self.effect == FORCES_SCALED
 
     @property
     def name(self) -> str:

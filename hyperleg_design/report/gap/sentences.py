@@ -122,6 +122,8 @@ def verdict_sentence(diagnosis: Entry) -> str:
     causes, verdict = list(diagnosis["causes"]), str(diagnosis["verdict"])
     where = joined(places_of(diagnosis)[:2])
     if verdict == "none":
+        if (diagnosis.get("lacks") or {}).get("causes"):
+            return "Nothing has changed since the reference logs."
         return "These logs show no gap between robot and model."
     hidden = [
         str(shape["location"])

@@ -67,6 +67,8 @@ def test_where_a_joint_rings_no_gap_beyond_the_noise_is_claimed() -> None:
 
 def test_each_verdict_is_one_sentence() -> None:
     assert verdict_sentence(diagnosis("none", [])).endswith("no gap between robot and model.")
+    lacking = diagnosis("none", [], lacks={"verdict": "explained", "causes": FRICTION})
+    assert verdict_sentence(lacking) == "Nothing has changed since the reference logs."
     unknown = diagnosis("unknown", [], where=[{"location": "a", "regime": "all", "share": 1.0}])
     assert verdict_sentence(unknown).startswith("There is a gap at a, and no effect")
     assert verdict_sentence(diagnosis("explained", FRICTION[:2])) == (

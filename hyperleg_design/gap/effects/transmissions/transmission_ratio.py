@@ -52,6 +52,9 @@ class TransmissionRatio(GearEffect):
     scales: ClassVar[str] = "motor"
     rare: ClassVar[float] = -0.5
     """Assumed: belts have the ratio of their teeth."""
+    unseen: ClassVar[float] = -6.0
+    """Assumed: through torques alone it fits whatever scales them, such as all of a joint's
+    friction on another day."""
     summary: ClassVar[str] = "a transmission's ratio differs from the model's"
     built: ClassVar[bool] = True
     parameters: ClassVar[tuple[Parameter, ...]] = (
@@ -71,6 +74,11 @@ class TransmissionRatio(GearEffect):
         "known angle": SCALING | {"rotor_inertia"},
         "log rotor speeds": BESIDE_TRANSMISSIONS | {"transmission_elasticity", "backlash"},
     }
+
+    @override
+    def driven(self, signals: Signals) -> bool:
+        """Whether speeds of motors show it."""
+        return "transmission" in signals.residual
 
     @override
     def _left(self, signals: Signals, motor: int, *values: Any) -> dict[str, np.ndarray]:
