@@ -106,8 +106,8 @@ class NuisanceParameter:
 
     @property
     def known(self) -> bool:
-        """Whether no scale of a channel enlarges its deviation: contact forces of which masses of
-        nothing and a biased IMU leave a residual without noise would hide every load.
+        """Whether no scale of a channel enlarges its deviation: forces that count for nothing, and
+        links without mass, would leave no residual, in which no load could show.
         """
         return self.effect == FORCES_SCALED
 

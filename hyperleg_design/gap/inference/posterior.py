@@ -45,6 +45,8 @@ class Posterior:
     those in `order` that they are none."""
     standing: tuple[int, ...]
     """Its candidates that act in the references, too, likewise: what the model lacks."""
+    shares: tuple[float, ...]
+    """Of the gap, that each of its causes closes, see `GapSize.closed_by` [-]."""
     probability: dict[Name, float]
     """Of each candidate in any hypothesis."""
     rivals: tuple[tuple[Hypothesis, Candidate], ...]
@@ -93,15 +95,19 @@ def posterior_of(
     closed = size.closed
     remainder = float(np.clip(1 - closed, 0.0, 1.0)) if acting else 0.0
     ranked = [place for place in ranked if place not in odd]
+    shares = tuple(
+        size.closed_by(cause.trace(best.theta[part]), standing=cause.standing)
+        for cause, part in zip(best.causes, best.parts, strict=True)
+    )
     order, small = _closing(
-        best, [place for place in ranked if not best.candidates[place].standing], size, rules
+        best, [place for place in ranked if not best.candidates[place].standing], shares, rules
     )
     standing = tuple(place for place in ranked if best.candidates[place].standing)
     rivals = _rivals(result, best)
     if not order:
         verdict = "unknown" if acting else "none"
         return Posterior(
-            verdict, best, (), (), standing, probability, rivals, (), odd, 0.0, remainder
+            verdict, best, (), (), standing, shares, probability, rivals, (), odd, 0.0, remainder
         )
     sets = tuple(_alike(result, best, place, rules) for place in order)
     main = closed if acting else 1.0
@@ -113,44 +119,35 @@ def posterior_of(
         for name, p in probability.items()
     }
     return Posterior(
-        verdict, best, order, small, standing, probability, rivals, sets, odd, closed, remainder
+        verdict=verdict,
+        hypothesis=best,
+        order=order,
+        small=small,
+        standing=standing,
+        shares=shares,
+        probability=probability,
+        rivals=rivals,
+        alike=sets,
+        odd=odd,
+        closed=closed,
+        remainder=remainder,
     )
 
 
 def _closing(
-    best: Hypothesis, places: Sequence[int], size: GapSize, rules: InferenceRules
+    best: Hypothesis, places: Sequence[int], shares: Sequence[float], rules: InferenceRules
 ) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Of some candidates those that close a part of the gap, and those that close next to nothing
     beside them.
     """
-    closed = {
-        place: max(
-            closed_by(best, cause, size)
-            for cause, (_, own) in enumerate(expanded(best.candidates))
-            if own is best.candidates[place]
-        )
-        for place in places
-    }
+    closed = dict.fromkeys(places, -np.inf)
+    for (place, _), share in zip(expanded(best.candidates), shares, strict=True):
+        if place in closed:
+            closed[place] = max(closed[place], share)
     closing = tuple(place for place in places if closed[place] >= rules.posterior.least_closed)
     if not closing:
         return tuple(places), ()
     return closing, tuple(place for place in places if place not in closing)
-
-
-def closed_by(hypothesis: Hypothesis, place: int, size: GapSize) -> float:
-    """Compute the share of the gap that one cause closes.
-
-    Args:
-        hypothesis: the most probable one.
-        place: index of the cause among its causes.
-        size: of the gap by that hypothesis.
-
-    Returns:
-        The share, see `GapSize.closed_by`.
-    """
-    cause = hypothesis.causes[place]
-    trace = cause.trace(hypothesis.theta[hypothesis.parts[place]])
-    return size.closed_by(trace, standing=cause.standing)
 
 
 def _stated(candidate: Candidate) -> list[Name]:

@@ -77,6 +77,17 @@ class Mechanism:
             joint = int(self.parent[joint])
         return joints[::-1]
 
+    def chain_to(self, link: int) -> list[int]:
+        """List the joints from the base to a link.
+
+        Args:
+            link: index of the link.
+
+        Returns:
+            Indices of joints.
+        """
+        return self.chain(int(self.link_joint[link]))
+
     def limbs(self, joints: Iterable[int]) -> list[int]:
         """List all joints of the limbs that hold some joints: no other joint feels their motion
         where the base's is given.

@@ -39,7 +39,7 @@ def contact_torque(
     frames = joint_frames(tree, position)
     torque = np.zeros((len(position), tree.count))
     for row, pad in enumerate(subject.pads):
-        for j in tree.chain(int(tree.link_joint[pad.link])):
+        for j in tree.chain_to(pad.link):
             axes, origin = frames[j]
             arm = points[:, row] - origin if tree.hinge[j] else None
             column = np.cross(axes[..., 2], arm) if arm is not None else axes[..., 2]

@@ -28,7 +28,7 @@ from hyperleg_design.gap.inference.hypotheses.hypothesis import (
 from hyperleg_design.gap.inference.hypotheses.reference_differences import Difference
 from hyperleg_design.gap.inference.hypotheses.search import Result
 from hyperleg_design.gap.inference.intervals import intervals
-from hyperleg_design.gap.inference.posterior import Posterior, closed_by, expanded
+from hyperleg_design.gap.inference.posterior import Posterior, expanded
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline.unexplained import Unexplained
 from hyperleg_design.gap.results.diagnosis import (
@@ -200,7 +200,7 @@ class Answer:
         """
         if hypothesis is not self.posterior.hypothesis or not self.posterior.hypothesis.causes:
             return 0.0
-        return max(closed_by(hypothesis, place, self.size), WORST)
+        return max(self.posterior.shares[place], WORST)
 
     def rivals(self) -> tuple[Named, ...]:
         """Other candidates, most probable first; one an effect and place, as the same effect at all

@@ -19,6 +19,7 @@ from hyperleg_design.gap.results.diagnosis import (
     Shrinkage,
     residual_shape,
 )
+from hyperleg_design.gap.signals.contact import foot_chain
 
 APART = (SLIPS, SINKS)
 """Names of these findings in `Diagnosis.residual_shape`."""
@@ -82,16 +83,15 @@ def misplaced_feet(diagnosis: Diagnosis, subject: Subject) -> set[str]:
     Returns:
         Names of feet.
     """
-    tree = subject.tree
     joints = {
         subject.joints.index(cause.location)
         for cause in diagnosis.causes
         if EFFECTS[cause.effect].of_zeros
     }
     return {
-        subject.feet[pad.foot]
-        for pad in subject.pads
-        if joints.intersection(tree.chain(int(tree.link_joint[pad.link])))
+        name
+        for foot, name in enumerate(subject.feet)
+        if joints.intersection(foot_chain(subject, foot))
     }
 
 

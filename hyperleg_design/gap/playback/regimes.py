@@ -81,7 +81,7 @@ def _stance(signals: Signals, names: tuple[str, ...]) -> tuple[np.ndarray, np.nd
     assert touching is not None
     stance, known = np.zeros((len(signals.time), len(names)), bool), np.zeros(len(names), bool)
     for pad in subject.pads:
-        chain = subject.tree.chain(int(subject.tree.link_joint[pad.link]))
+        chain = subject.tree.chain_to(pad.link)
         stance[:, chain] |= touching[:, pad.foot, None]
         known[chain] = True
     return stance, known

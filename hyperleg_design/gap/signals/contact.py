@@ -124,7 +124,7 @@ def unknown_rows(subject: Subject, ground: Ground, margin: int) -> np.ndarray:
     Returns:
         `(t, n)`; `(1, n)` where there is none.
     """
-    chains = [_foot_chain(subject, foot) for foot in range(len(subject.feet))]
+    chains = [foot_chain(subject, foot) for foot in range(len(subject.feet))]
     if ground.touching is None:
         return np.zeros((1, len(subject.joints)), bool)
     unknown = ground.touching
@@ -140,11 +140,20 @@ def unknown_rows(subject: Subject, ground: Ground, margin: int) -> np.ndarray:
     return out
 
 
-def _foot_chain(subject: Subject, foot: int) -> list[int]:
+def foot_chain(subject: Subject, foot: int) -> list[int]:
+    """List the joints between the base and a foot.
+
+    Args:
+        subject: the robot.
+        foot: index of the foot.
+
+    Returns:
+        Indices of joints.
+    """
     joints: set[int] = set()
     for pad in subject.pads:
         if pad.foot == foot:
-            joints |= set(subject.tree.chain(int(subject.tree.link_joint[pad.link])))
+            joints |= set(subject.tree.chain_to(pad.link))
     return sorted(joints)
 
 

@@ -32,7 +32,7 @@ from hyperleg_design.report.gap.sentences import (
     title,
     verdict_sentence,
 )
-from hyperleg_design.report.gap.text import change_text, sensitivity_rows
+from hyperleg_design.report.gap.text import change_text, lacking, sensitivity_rows
 from hyperleg_design.report.page import Details, Picture, Table, fill
 from hyperleg_design.report.style import save
 from hyperleg_design.writing import write_text
@@ -72,7 +72,7 @@ def write_gap_page(
     causes, rivals = list(diagnosis["causes"]), list(diagnosis["rivals"])
     verdict = str(diagnosis["verdict"])
     residual_name = _telling_residual(signals, causes)
-    standing = list((diagnosis.get("lacks") or {}).get("causes", ()))
+    standing = lacking(diagnosis)
     shown = [evidence(log, causes, residual_name, standing) for log in signals]
     # joints that stand all the time show nothing
     shown = [part for part in shown if np.isfinite(part.before).any()]

@@ -10,7 +10,7 @@ from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.pipeline.unexplained import HIDING
 from hyperleg_design.report.gap.alike import places, span_text, spans, telling, together
 from hyperleg_design.report.gap.run import Run
-from hyperleg_design.report.gap.text import beyond_references
+from hyperleg_design.report.gap.text import beyond_references, lacking
 
 Entry = Mapping[str, Any]
 """A cause, a rival or another entry, as `diagnosis.json` holds it."""
@@ -122,7 +122,7 @@ def verdict_sentence(diagnosis: Entry) -> str:
     causes, verdict = list(diagnosis["causes"]), str(diagnosis["verdict"])
     where = joined(places_of(diagnosis)[:2])
     if verdict == "none":
-        if (diagnosis.get("lacks") or {}).get("causes"):
+        if lacking(diagnosis):
             return "Nothing has changed since the reference logs."
         return "These logs show no gap between robot and model."
     hidden = [

@@ -193,6 +193,18 @@ def change_text(entry: Mapping[str, Any]) -> str:
     return f"{change:.2g} {unit}" if unit else f"{100 * change:.2g} %"
 
 
+def lacking(diagnosis: Mapping[str, Any]) -> list[Any]:
+    """List what the model lacks of the robot in the references already.
+
+    Args:
+        diagnosis: as `diagnosis.json` holds it.
+
+    Returns:
+        Its causes.
+    """
+    return list((diagnosis.get("lacks") or {}).get("causes", ()))
+
+
 def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     """Write verdict, gap, causes, rivals, what the model lacked in the references already, and what
     to do next.
@@ -215,7 +227,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
             f"closed on held-out data: {100 * gap['closed']:.0f} % ({low:.0f} .. {high:.0f})"
         )
     rivals = [r for r in diagnosis["rivals"] if r["probability"] >= LEAST_PROBABILITY]
-    lacks = (diagnosis.get("lacks") or {}).get("causes", [])
+    lacks = lacking(diagnosis)
     groups = (
         *(
             (f"reference {row['log']} differs from the others; taken out of it:", [row])

@@ -25,3 +25,13 @@ def test_samples_under_test_come_first_and_have_the_same_trace(viscous):
     effect = EFFECTS["viscous_friction"]
     (whole,), (own,) = (trace(one, effect, "knee") for one in (viscous.samples, viscous.tests))
     np.testing.assert_array_equal(under_test(whole, viscous.tests).columns, own.columns)
+
+
+def test_a_ratio_that_no_speed_of_a_motor_shows_is_unseen(viscous):
+    effect, values = EFFECTS["transmission_ratio"], np.array([1.05, 0.0])
+    shown = any("transmission" in log.residual for log in viscous.signals)
+    cause = linearise(viscous.samples, effect, "m_back", values)
+    assert cause.unseen is not shown
+    assert (
+        linearise(viscous.samples, EFFECTS["rotor_inertia"], "m_back", values[:1]).unseen is False
+    )

@@ -145,9 +145,8 @@ class HypothesisFit:
         """What causes gain at fixed scales where the last of them has the values at which it is
         linearised, without what is known of sizes before [nat].
         """
-        size = (cause.values - cause.nulls) / cause.usual
-        low, high = (np.r_[end[: -len(size)], size] for end in (stack.low, stack.high))
-        solution = self.at_scales(replace(stack, low=low, high=high), crossing, scales)
+        last = slice(len(stack.low) - len(cause.nulls), None)
+        solution = self.at_scales(_held(stack, [(last, cause)]), crossing, scales)
         paid = sum(term.log(solution.theta[place]) for place, term in stack.groups)
         return solution.gain - solution.occam + paid
 
@@ -170,13 +169,8 @@ class HypothesisFit:
             return hypothesis
         stack = Stack.of(causes, self.evidence.weight)
         crossing = Crossing.of(self.evidence.channels, stack.rows)
-        low, high = stack.low.copy(), stack.high.copy()
-        for i in bent:
-            low[part[i]] = high[part[i]] = (causes[i].values - causes[i].nulls) / causes[i].usual
-        stack = replace(stack, low=low, high=high)
-        fit = self._round(
-            stack, crossing, self._begun(stack, crossing, hypothesis.scales), 2, STEPS
-        )
+        stack = _held(stack, [(part[i], causes[i]) for i in bent])
+        fit = self._first_round(stack, crossing, hypothesis.scales)
         reached = self._likelihood(stack, crossing, fit)
         own = replace(hypothesis, theta=fit.solution.theta, scales=fit.scales, log_evidence=reached)
         return replace(own, log_prior=log_prior(own, self.evidence, self.rules, self.count))
@@ -255,12 +249,9 @@ class HypothesisFit:
 
     def _first_round(self, stack: Stack, crossing: Crossing, scales: Sequence[Scales]) -> _Fitted:
         """Causes at given scales, and after one round."""
-        return self._round(stack, crossing, self._begun(stack, crossing, scales), 2, STEPS)
-
-    def _begun(self, stack: Stack, crossing: Crossing, scales: Sequence[Scales]) -> _Fitted:
-        """Causes at given scales."""
         solution = self.at_scales(stack, crossing, scales)
-        return _Fitted(tuple(scales), solution, np.ones(crossing.count, bool))
+        begun = _Fitted(tuple(scales), solution, np.ones(crossing.count, bool))
+        return self._round(stack, crossing, begun, 2, STEPS)
 
     def _round(
         self,
@@ -302,6 +293,14 @@ class HypothesisFit:
                 for channel, own, rest, null in each
             )
         )
+
+
+def _held(stack: Stack, causes: Sequence[tuple[slice, Cause]]) -> Stack:
+    """A stack in which some causes keep the values at which they are linearised."""
+    low, high = stack.low.copy(), stack.high.copy()
+    for part, cause in causes:
+        low[part] = high[part] = (cause.values - cause.nulls) / cause.usual
+    return replace(stack, low=low, high=high)
 
 
 def _sizes(stack: Stack, solution: Solution) -> np.ndarray:

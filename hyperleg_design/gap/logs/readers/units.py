@@ -69,10 +69,10 @@ def factor(column: str, given: str, where: str) -> float:
     Raises:
         InputError: not a unit of this signal.
     """
-    own = unit(column)
-    factors = FACTORS[own] | (FACTORS[SLIDING[own]] if own in SLIDING else {})
     if not given:
         return 1.0
+    own = unit(column)
+    factors = FACTORS[own] | (FACTORS[SLIDING[own]] if own in SLIDING else {})
     unit_factor = factors.get(given.strip().lower().replace(" ", ""))
     if unit_factor is None:
         remedy = f"is no unit of this signal; there are {', '.join(k for k in factors if k)}"
