@@ -11,7 +11,7 @@ data cannot tell apart, and what remains.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,9 +40,9 @@ class Posterior:
     """The most probable hypothesis."""
     order: tuple[int, ...]
     """Its candidates that are faults and no `standing` ones, the one that explains most first."""
-    small: tuple[int, ...]
-    """Its candidates that are faults and no `standing` ones, but close so little of the gap beside
-    those in `order` that they are none."""
+    minor: tuple[int, ...]
+    """Its candidates that are faults and no `standing` ones, but beside those in `order` are less
+    probable than not, or close next to nothing of the gap."""
     standing: tuple[int, ...]
     """Its candidates that act in the references, too, likewise: what the model lacks."""
     shares: tuple[float, ...]
@@ -99,9 +99,11 @@ def posterior_of(
         size.closed_by(cause.trace(best.theta[part]), standing=cause.standing)
         for cause, part in zip(best.causes, best.parts, strict=True)
     )
-    order, small = _closing(
-        best, [place for place in ranked if not best.candidates[place].standing], shares, rules
-    )
+    changes = [place for place in ranked if not best.candidates[place].standing]
+    alike = {place: _alike(result, best, place, rules) for place in changes}
+    names = {place: (best.candidates[place].name, *alike[place]) for place in changes}
+    certain = {place: sum(probability[name] for name in names[place]) for place in changes}
+    order, minor = _main_causes(best, certain, shares, rules)
     standing = tuple(place for place in ranked if best.candidates[place].standing)
     rivals = _rivals(result, best)
     if not order:
@@ -109,7 +111,7 @@ def posterior_of(
         return Posterior(
             verdict, best, (), (), standing, shares, probability, rivals, (), odd, 0.0, remainder
         )
-    sets = tuple(_alike(result, best, place, rules) for place in order)
+    sets = tuple(alike[place] for place in order)
     main = closed if acting else 1.0
     verdict = "ambiguous" if any(sets) else "explained"
     if main < own.main_part:
@@ -122,7 +124,7 @@ def posterior_of(
         verdict=verdict,
         hypothesis=best,
         order=order,
-        small=small,
+        minor=minor,
         standing=standing,
         shares=shares,
         probability=probability,
@@ -134,20 +136,31 @@ def posterior_of(
     )
 
 
-def _closing(
-    best: Hypothesis, places: Sequence[int], shares: Sequence[float], rules: InferenceRules
+def _main_causes(
+    best: Hypothesis, certain: Mapping[int, float], shares: Sequence[float], rules: InferenceRules
 ) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Of some candidates those that close a part of the gap, and those that close next to nothing
-    beside them.
+    """Of some candidates those that are causes, and those that beside them are less probable than
+    not, with what they cannot be told from, or close next to nothing.
+
+    Args:
+        best: the most probable hypothesis.
+        certain: probability by place of each of its candidates that may be a cause.
+        shares: that each of its causes closes of the gap.
+        rules: of the inference.
     """
-    closed = dict.fromkeys(places, -np.inf)
+    closed = dict.fromkeys(certain, -np.inf)
     for (place, _), share in zip(expanded(best.candidates), shares, strict=True):
         if place in closed:
             closed[place] = max(closed[place], share)
-    closing = tuple(place for place in places if closed[place] >= rules.posterior.least_closed)
-    if not closing:
-        return tuple(places), ()
-    return closing, tuple(place for place in places if place not in closing)
+    own = rules.posterior
+    main = tuple(
+        place
+        for place, probability in certain.items()
+        if closed[place] >= own.least_closed and probability >= own.likely
+    )
+    if not main:
+        return tuple(certain), ()
+    return main, tuple(place for place in certain if place not in main)
 
 
 def _stated(candidate: Candidate) -> list[Name]:

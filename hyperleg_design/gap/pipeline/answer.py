@@ -294,7 +294,7 @@ class Answer:
             for cause, description in self.unexplained.unlisted_causes
             if cause.standing
         )
-        texts += self.small()
+        texts += self.minor()
         texts += self.ends()
         if has_placeholders(self.evidence.signals[0].subject):
             texts.append(
@@ -308,17 +308,17 @@ class Answer:
             )
         return tuple(dict.fromkeys(texts))
 
-    def small(self) -> list[str]:
-        """Causes that close too little to be any, in words."""
+    def minor(self) -> list[str]:
+        """Causes of the most probable hypothesis that are not named, in words."""
         hypothesis, texts = self.posterior.hypothesis, []
-        for place in self.posterior.small:
+        for place in self.posterior.minor:
             named = self.named(hypothesis, hypothesis.candidates[place])
             most = max(named, key=lambda cause: cause.closed)
             places, share = ", ".join(cause.location for cause in named), max(most.closed, 0.0)
-            texts.append(
-                f"{most.effect} at {places} fits, too, but closes {100 * share:.0f} % of the gap "
-                "there: too little for a cause"
-            )
+            why = f"closes {100 * share:.0f} % of the gap there: too little for a cause"
+            if share >= self.rules.posterior.least_closed:
+                why = f"is a cause with a probability of {most.probability:.2f} only"
+            texts.append(f"{most.effect} at {places} fits, too, but {why}")
         return texts
 
     def ends(self) -> list[str]:

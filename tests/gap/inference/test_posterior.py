@@ -105,13 +105,30 @@ def test_what_closes_next_to_nothing_beside_another_is_no_cause(share, named):
     found = answer(hypothesis(0.0), both, alone={2.0: 1.0, 1.0: share})
     assert (found.verdict, len(found.order)) == ("explained", named)
     assert found.order[0] == 0
-    assert found.small == ((1,) if named == 1 else ())
+    assert found.minor == ((1,) if named == 1 else ())
+
+
+def test_what_is_less_probable_than_not_beside_another_is_no_cause():
+    both = hypothesis(40.0, ("a", "x"), ("b", "y"))
+    others = [hypothesis(37.2, ("a", "x"), (name, "z")) for name in "cdefgh"]
+    found = answer(hypothesis(0.0), both, *others)
+    assert found.probability["b", "y", False] < RULES.posterior.likely
+    assert [found.hypothesis.candidates[i].name[0] for i in found.order] == ["a"]
+    assert len(found.minor) == 1
+
+
+def test_what_cannot_be_told_apart_is_as_probable_as_all_of_it():
+    both = hypothesis(40.0, ("a", "x"), ("b", "y"))
+    others = [hypothesis(39.8, ("a", "x"), (name, "y")) for name in "cde"]
+    found = answer(hypothesis(0.0), both, *others)
+    assert found.probability["b", "y", False] < RULES.posterior.likely
+    assert (len(found.order), found.minor) == (2, ())
 
 
 def test_of_causes_that_all_close_little_each_is_named():
     both = hypothesis(40.0, ("a", "x"), ("b", "y"))
     found = answer(hypothesis(0.0), both, alone={2.0: 0.05, 1.0: 0.02})
-    assert (len(found.order), found.small) == (2, ())
+    assert (len(found.order), found.minor) == (2, ())
 
 
 def test_what_stands_in_the_references_is_no_change():
