@@ -25,11 +25,6 @@ from hyperleg_design.gap.signals.sliding import dry_friction_in
 from hyperleg_design.gap.signals.stop_operator import stop
 from hyperleg_design.memoized import memoized
 
-NEAR = 0.5
-"""Time over which the size of a load is averaged [s]."""
-TURNING, TURNING_TIME = 0.006, 0.05
-"""Way on which friction may turn over [rad], half of it; and time around it for which that counts
-[s]."""
 FAST = 10.0
 """Speed that a motor is made for where nobody gives its limits [rad/s]; assumed."""
 AT_MOST, ENOUGH = 1.5, 16
@@ -38,11 +33,9 @@ POSTURE = 0.05
 """Time in which a posture, and its inertia, hardly changes [s] (assumed)."""
 FEWEST = 64
 """Samples of a position that tell whether its noise goes with speed."""
-LEAST = 1e-4
-"""Least standard deviation over the torque that a joint is made for [-]: what single precision and
-rounding in logs leave."""
 WITHOUT_DRIVES = {"base": 100.0, "ground": 100.0, "gyro": 1.0, "accelerometer": 10.0}
-"""What stands for that torque in residuals that are of no drive [N, Nm, rad/s, m/s^2]; assumed."""
+"""What stands for the torque that a joint is made for in residuals that are of no drive [N, Nm,
+rad/s, m/s^2]; assumed."""
 
 
 def expected(filtered_log: FilteredLog, rules: NoiseRules) -> list[np.ndarray]:
@@ -89,14 +82,14 @@ def _row(
         if filtered_log.mask[row].any()
         else 0.0
     )
-    turning = _turning(filtered_log, row) if constant > 0 else np.zeros(len(signals.time))
-    sinking = _smoothed(_sinking(filtered_log, row) ** 2, NEAR / signals.step)
+    turning = _turning(filtered_log, row, rules) if constant > 0 else np.zeros(len(signals.time))
+    sinking = _smoothed(_sinking(filtered_log, row) ** 2, rules.near / signals.step)
     noise_level, start = np.empty(len(samples)), 0
     for band, white in zip(filtered_log.bands[row], density, strict=True):
         part = slice(start, start + len(band.used))
         start = part.stop
         local = _smoothed(
-            samples[part] ** 2, band.count / (filtered_log.length * signals.step) * NEAR
+            samples[part] ** 2, band.count / (filtered_log.length * signals.step) * rules.near
         )
         noise = white * (band.high - band.low) + _at(
             _of_acceleration(filtered_log, row, band.low, band.high), band
@@ -106,7 +99,11 @@ def _row(
             filtered_log.bands[row]
         )
         noise_level[part] = np.sqrt(
-            noise + share + dry + _at(sinking, band) + (LEAST * _strength(filtered_log, row)) ** 2
+            noise
+            + share
+            + dry
+            + _at(sinking, band)
+            + (rules.rounding * _strength(filtered_log, row)) ** 2
         )
     assert len(level) == start
     return noise_level
@@ -122,14 +119,14 @@ def _sinking(filtered_log: FilteredLog, row: int) -> np.ndarray:
     return np.nan_to_num(footings(filtered_log.signals)[place.column // 3].doubt())
 
 
-def _turning(filtered_log: FilteredLog, row: int) -> np.ndarray:
+def _turning(filtered_log: FilteredLog, row: int, rules: NoiseRules) -> np.ndarray:
     """How much of a joint's friction turns over at each tick, averaged around it `(t,)`."""
     signals, place = filtered_log.signals, filtered_log.rows[row]
     joint = place.column
     if place.residual_name == "drive":
         joint = signals.subject.main_joint(joint)
-    part = 1 - stop(signals.position[:, joint], TURNING) ** 2
-    return _smoothed(part * filtered_log.mask[row], TURNING_TIME / signals.step)
+    part = 1 - stop(signals.position[:, joint], rules.turning_way) ** 2
+    return _smoothed(part * filtered_log.mask[row], rules.turning_time / signals.step)
 
 
 def _at(values: np.ndarray, band: Band) -> np.ndarray:

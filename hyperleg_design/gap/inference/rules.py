@@ -30,6 +30,15 @@ class NoiseRules:
     """The same, while a joint turns round and its friction turns over [-] (developed)."""
     leak: float = 0.001
     """The same of the whole torque, into every band [-] (developed)."""
+    turning_way: float = 0.006
+    """Half of the way on which friction may turn over as a joint turns round [rad] (assumed)."""
+    turning_time: float = 0.05
+    """Time around it for which that counts [s] (assumed)."""
+    near: float = 0.5
+    """Time over which the size of a load is averaged [s] (assumed)."""
+    rounding: float = 1e-4
+    """Least deviation of noise over the torque that a joint is made for [-]: what single precision
+    and rounding in logs leave (assumed)."""
     weight: float = 4.0
     """Independent numbers that the expected noise counts for when that of a channel and band is
     estimated [-] (assumed)."""
@@ -202,6 +211,50 @@ class PosteriorRules:
 
 
 @dataclass(frozen=True)
+class GroundRules:
+    """From how feet slide and sink to a ground that differs from the model's."""
+
+    slides: float = 0.015
+    """Speed against the force from which a contact may slide [m/s] (assumed: above what encoders'
+    noise makes)."""
+    straight: float = 2.0
+    """Least ratio of that speed to the one across the force [-] (assumed)."""
+    least_time: float = 0.1
+    """Least time that a foot slides [s] (assumed)."""
+    same: float = 0.1
+    """Largest range of the middle half of the ratios of force to load over their median, so that
+    they count as one coefficient [-] (assumed)."""
+    beyond: float = 1.1
+    """Ratio over the sliding one that loaded ticks exceed seldom [-] (assumed)."""
+    seldom: float = 0.02
+    """Share of the loaded ticks that may exceed it [-] (assumed)."""
+    speeds: float = 1.5
+    """Least ratio of fast to slow sliding (percentiles 90 and 10 of the speed) [-]: at a single
+    speed a creeping foot has a single ratio, too (assumed)."""
+    slippery: float = 2.0
+    """Least difference from the nominal friction that is a finding, over the usual one [-]
+    (assumed)."""
+    day: float = 0.7
+    """Change of a ground's friction from one session to the next, over the usual difference from
+    the nominal one [-] (assumed)."""
+    soft: float = 1.5
+    """Least difference from the nominal compliance that is a finding, over the usual one [-]
+    (assumed)."""
+    certain: float = 3.0
+    """Least excess of the compliance over the nominal one, in its standard errors [-] (assumed)."""
+    pads: float = 0.1
+    """Relative error of the compliance that all pads of a foot share [-] (assumed: their heights
+    are off alike)."""
+    loads: float = 4.0
+    """Least standard deviation of a pad's load [N] (assumed)."""
+    ticks: int = 200
+    """Least ticks of a pad under load in a log [-] (assumed)."""
+    contacts: int = 4
+    """Least number of pads, those of each log counted apart, whose scatter gives the standard error
+    [-]; a foot with fewer pads is cut into stretches of time (assumed)."""
+
+
+@dataclass(frozen=True)
 class InferenceRules:
     """All rules of the inference."""
 
@@ -210,6 +263,7 @@ class InferenceRules:
     cause: CauseRules = field(default_factory=CauseRules)
     search: SearchRules = field(default_factory=SearchRules)
     posterior: PosteriorRules = field(default_factory=PosteriorRules)
+    ground: GroundRules = field(default_factory=GroundRules)
 
     def __post_init__(self) -> None:
         """Check that numbers are finite and not negative, and prior probabilities below 1.

@@ -160,7 +160,7 @@ def _beside(
     misplaced = misplaced_feet(diagnosis, signals[0].subject)
     for effect, tell in ((SLIPPERY, slips), (SOFT, sinks)):
         if effects is None or effect in effects:
-            grounds = tell(signals, references)
+            grounds = tell(signals, references, rules.ground)
             foretold = tuple(
                 ground
                 for ground in grounds

@@ -15,6 +15,7 @@ import numpy as np
 from hyperleg_design.gap.effects.ground.ground_compliance import USUAL, GroundCompliance
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
 from hyperleg_design.gap.inference.intervals import NORMAL
+from hyperleg_design.gap.inference.rules import GroundRules
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, Footing, footings
 from hyperleg_design.gap.signals.nominal_ground import Law
@@ -22,20 +23,6 @@ from hyperleg_design.gap.signals.signals import Signals
 
 EFFECT = GroundCompliance.identifier
 SINKS = "sinks"
-UNUSUAL = 1.5
-"""Least difference from the nominal compliance that is a finding, over the usual one
-(`ground_compliance.USUAL`) [-]."""
-CERTAIN = 3.0
-"""Least excess of the compliance over the nominal one, in its standard errors [-]."""
-PADS = 0.1
-"""Relative error of the compliance that all pads of a foot share [-] (assumed: their heights are
-off alike)."""
-LEAST_TICKS, LEAST_CONTACTS = 200, 4
-"""Least ticks of a pad under load in a log; and least number of pads, those of each log counted
-apart, whose scatter gives the standard error. A foot with fewer pads is cut into stretches of
-time."""
-VARIED = 4.0
-"""Least standard deviation of a pad's load [N]."""
 DEEPEST = 0.05
 """Depth up to which the nominal ground's force is tabulated [m]."""
 
@@ -66,7 +53,9 @@ class Bearing:
         return float(np.sum((self.load - self.load.mean()) ** 2))
 
 
-def sinks(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> tuple[Underfoot, ...]:
+def sinks(
+    signals: Sequence[Signals], references: Sequence[Signals], rules: GroundRules
+) -> tuple[Underfoot, ...]:
     """Feet whose ground gives more than it should, those that sink most first.
 
     A stiffer ground is not told: models are as soft as their step allows, robots' floors are not.
@@ -75,9 +64,10 @@ def sinks(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> tup
         signals: logs to be diagnosed.
         references: logs of the healthy robot; a ground that gave as much under it, too, is none of
             these.
+        rules: from when on a foot sinks.
     """
     feet_that_sink = [
-        _sink(foot, place, signals, references)
+        _sink(foot, place, signals, references, rules)
         for place, foot in enumerate(signals[0].subject.feet)
     ]
     return tuple(
@@ -89,19 +79,26 @@ def sinks(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> tup
 
 
 def _sink(
-    foot: str, place: int, signals: Sequence[Signals], references: Sequence[Signals]
+    foot: str,
+    place: int,
+    signals: Sequence[Signals],
+    references: Sequence[Signals],
+    rules: GroundRules,
 ) -> Underfoot | None:
-    logs = [_apart(bearings(log, place)) for log in signals]
+    logs, before = (
+        [_apart(bearings(log, place, rules), rules) for log in some]
+        for some in (signals, references)
+    )
     pads = [pad for own in logs for pad in own]
-    given = _compliance(pads)
-    healthy = _compliance([pad for log in references for pad in _apart(bearings(log, place))])
+    given = _compliance(pads, rules)
+    healthy = _compliance([pad for own in before for pad in own], rules)
     if given is None:
         return None
     scale, error = given
     if healthy is not None and healthy[0] > 0:
         error = float(np.hypot(error, scale * healthy[1] / healthy[0])) / healthy[0]
         scale = scale / healthy[0]
-    if scale - CERTAIN * error < 1 or scale < 1 + UNUSUAL * USUAL:
+    if scale - rules.certain * error < 1 or scale < 1 + rules.soft * USUAL:
         return None
     nominal = float(
         np.average([pad.nominal_slope for pad in pads], weights=[pad.weight for pad in pads])
@@ -112,14 +109,18 @@ def _sink(
         np.sqrt(np.mean(np.concatenate([(pad.load - pad.load.mean()) ** 2 for pad in pads])))
     )
     parts = logs
-    if len(logs) < 2 or any(len(own) < LEAST_CONTACTS for own in logs):
-        parts = [[half for pad in pads if (half := _half(pad, late))] for late in (False, True)]
-    others = [_compliance([pad for o in parts if o is not part for pad in o]) for part in parts]
+    if len(logs) < 2 or any(len(own) < rules.contacts for own in logs):
+        parts = [
+            [half for pad in pads if (half := _half(pad, late, rules))] for late in (False, True)
+        ]
+    others = [
+        _compliance([pad for o in parts if o is not part for pad in o], rules) for part in parts
+    ]
     off = [
         abs(nominal * other[0] - slope) if other is not None else slope - usual for other in others
     ]
     size, left = spread * (slope - usual), spread * float(np.sqrt(np.mean(np.square(off))))
-    reach = NORMAL * float(np.hypot(error, PADS * scale))
+    reach = NORMAL * float(np.hypot(error, rules.pads * scale))
     sentence = (
         f"sinks by {1e3 * slope * spread:.2g} mm with the usual changes of its pads' load, "
         f"{scale:.2g} times as much as it should"
@@ -138,12 +139,13 @@ def _sink(
     )
 
 
-def bearings(signals: Signals, place: int) -> list[Bearing]:
+def bearings(signals: Signals, place: int, rules: GroundRules) -> list[Bearing]:
     """Pads of a foot that bear it in a log, those that tell by their load.
 
     Args:
         signals: of a log.
         place: of the foot.
+        rules: from when on a pad tells.
     """
     feet = footings(signals)
     if not feet:
@@ -158,7 +160,7 @@ def bearings(signals: Signals, place: int) -> list[Bearing]:
             & np.isfinite(foot.height[:, pad])
             & (np.nan_to_num(load) > LOADED)
         )
-        if used.sum() >= LEAST_TICKS and float(load[used].std()) >= VARIED:
+        if used.sum() >= rules.ticks and float(load[used].std()) >= rules.loads:
             bearing_pads.append(
                 Bearing(load[used], foot.height[used, pad], -_depth(foot, pad, load[used]))
             )
@@ -179,11 +181,11 @@ def _depth(foot: Footing, pad: int, load: np.ndarray) -> np.ndarray:
     return np.interp(load, own.force(depth[:, None], np.zeros((len(depth), 1))), depth)
 
 
-def _compliance(pads: Sequence[Bearing]) -> tuple[float, float] | None:
+def _compliance(pads: Sequence[Bearing], rules: GroundRules) -> tuple[float, float] | None:
     """Slope over the nominal one of some pads together, and its standard error; None where they are
     few.
     """
-    if len(pads) < LEAST_CONTACTS:
+    if len(pads) < rules.contacts:
         return None
     weight = np.array([pad.weight for pad in pads])
     each = np.array([pad.slope / pad.nominal_slope for pad in pads])
@@ -192,11 +194,11 @@ def _compliance(pads: Sequence[Bearing]) -> tuple[float, float] | None:
     return mean, float(np.sqrt(np.sum(share**2 * (each - mean) ** 2) * len(pads) / (len(pads) - 1)))
 
 
-def _apart(pads: Sequence[Bearing]) -> list[Bearing]:
+def _apart(pads: Sequence[Bearing], rules: GroundRules) -> list[Bearing]:
     """Pads of a foot in a log, cut into stretches of time where they are too few for a scatter."""
-    if not pads or len(pads) >= LEAST_CONTACTS:
+    if not pads or len(pads) >= rules.contacts:
         return list(pads)
-    count = -(-LEAST_CONTACTS // len(pads))
+    count = -(-rules.contacts // len(pads))
     cut = [
         replace(pad, load=load, height=height, nominal=nominal)
         for pad in pads
@@ -205,14 +207,14 @@ def _apart(pads: Sequence[Bearing]) -> list[Bearing]:
             strict=True,
         )
     ]
-    return [pad for pad in cut if float(pad.load.std()) >= VARIED]
+    return [pad for pad in cut if float(pad.load.std()) >= rules.loads]
 
 
-def _half(pad: Bearing, late: bool) -> Bearing | None:
+def _half(pad: Bearing, late: bool, rules: GroundRules) -> Bearing | None:
     """First or second half of a pad's ticks, where its load varies enough there."""
     part = slice(len(pad.load) // 2, None) if late else slice(len(pad.load) // 2)
     half = replace(pad, load=pad.load[part], height=pad.height[part], nominal=pad.nominal[part])
-    return half if float(half.load.std()) >= VARIED else None
+    return half if float(half.load.std()) >= rules.loads else None
 
 
 def _slope(load: np.ndarray, height: np.ndarray) -> float:

@@ -17,34 +17,13 @@ import numpy as np
 from hyperleg_design.gap.effects.ground.ground_friction import USUAL, GroundFriction
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
 from hyperleg_design.gap.inference.intervals import NORMAL
+from hyperleg_design.gap.inference.rules import GroundRules
 from hyperleg_design.gap.results.diagnosis import Value
 from hyperleg_design.gap.signals.ground import LOADED, footings
 from hyperleg_design.gap.signals.signals import Signals
 
 EFFECT = GroundFriction.identifier
 SLIPS = "slips"
-DAY = 0.7
-"""Change of a ground's friction from one session to the next, over `ground_friction.USUAL` [-]
-(assumed)."""
-FAST = 0.015
-"""Speed against the force from which a contact may slide [m/s] (assumed: above what encoders' noise
-makes)."""
-STRAIGHT = 2.0
-"""Least ratio of that speed to the one across the force [-]."""
-LEAST_TIME = 0.1
-"""Least time that a foot slides [s]."""
-SAME = 0.1
-"""Largest range of the middle half of the ratios over their median, so that they count as one
-coefficient [-]."""
-BEYOND, SELDOM = 1.1, 0.02
-"""Ratio over the sliding one that loaded ticks exceed seldom [-], and the share of them that may
-[-]."""
-VARIED = 1.5
-"""Least ratio of fast to slow sliding (percentiles 90 and 10 of the speed) [-]: at a single speed a
-creeping foot has a single ratio, too."""
-UNUSUAL = 2.0
-"""Least difference from the nominal friction that is a finding, over the usual one
-(`ground_friction.USUAL`) [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,15 +43,20 @@ class _Sliding:
     """Ratio at all loaded ticks `(n,)`."""
 
 
-def slips(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> tuple[Underfoot, ...]:
+def slips(
+    signals: Sequence[Signals], references: Sequence[Signals], rules: GroundRules
+) -> tuple[Underfoot, ...]:
     """Feet that slide on another ground than the nominal one, those that do so longest first.
 
     Args:
         signals: logs to be diagnosed.
         references: logs of the healthy robot; a ground that they slid on, too, is none of these.
+        rules: from when on a foot slides.
     """
     feet = signals[0].subject.feet
-    feet_that_slide = [_slip(foot, place, signals, references) for place, foot in enumerate(feet)]
+    feet_that_slide = [
+        _slip(foot, place, signals, references, rules) for place, foot in enumerate(feet)
+    ]
     return tuple(
         sorted(
             (foot for foot in feet_that_slide if foot is not None),
@@ -82,10 +66,14 @@ def slips(signals: Sequence[Signals], references: Sequence[Signals] = ()) -> tup
 
 
 def _slip(
-    foot: str, place: int, signals: Sequence[Signals], references: Sequence[Signals]
+    foot: str,
+    place: int,
+    signals: Sequence[Signals],
+    references: Sequence[Signals],
+    rules: GroundRules,
 ) -> Underfoot | None:
-    logs = [slides for s in signals if (slides := _sliding(s, place)) is not None]
-    ratio = _coefficient(logs)
+    logs = _all_sliding(signals, place, rules)
+    ratio = _coefficient(logs, rules)
     if ratio is None:
         return None
     ground = footings(signals[0])[place]
@@ -94,16 +82,17 @@ def _slip(
         for name in ("along_edges", "ratio")
     )
     as_simulated = ground.law.weakest < 1 and _spread(edges) <= _spread(ratios)
-    if as_simulated and abs(float(np.median(edges)) / ground.friction - 1) <= UNUSUAL * USUAL:
+    if (
+        as_simulated
+        and abs(float(np.median(edges)) / ground.friction - 1) <= rules.slippery * USUAL
+    ):
         return None
-    healthy = _coefficient(
-        [slides for s in references if (slides := _sliding(s, place)) is not None]
-    )
-    usual, unsure = (ground.friction, USUAL) if healthy is None else (healthy, DAY * USUAL)
+    healthy = _coefficient(_all_sliding(references, place, rules), rules)
+    usual, unsure = (ground.friction, USUAL) if healthy is None else (healthy, rules.day * USUAL)
     scale = ratio / usual
-    if abs(scale - 1) < UNUSUAL * USUAL:
+    if abs(scale - 1) < rules.slippery * USUAL:
         return None
-    parts = [(slides.load, slides.ratio) for slides in logs if slides.time >= LEAST_TIME]
+    parts = [(slides.load, slides.ratio) for slides in logs if slides.time >= rules.least_time]
     if len(parts) < 2:
         loads = np.concatenate([slides.load for slides in logs])
         parts = list(
@@ -127,11 +116,11 @@ def _slip(
     )
 
 
-def _coefficient(logs: Sequence[_Sliding]) -> float | None:
+def _coefficient(logs: Sequence[_Sliding], rules: GroundRules) -> float | None:
     """The ratio of all that slides; None where that is little, or not one ratio, or less than what
     sticks.
     """
-    if sum(slides.time for slides in logs) < LEAST_TIME:
+    if sum(slides.time for slides in logs) < rules.least_time:
         return None
     ratio, speed, loaded = (
         np.concatenate([getattr(slides, name) for slides in logs])
@@ -139,10 +128,10 @@ def _coefficient(logs: Sequence[_Sliding]) -> float | None:
     )
     middle, (slower, faster) = float(np.median(ratio)), np.percentile(speed, [10, 90])
     if (
-        faster < VARIED * slower
+        faster < rules.speeds * slower
         or middle <= 0
-        or _spread(ratio) > SAME
-        or float(np.mean(loaded > BEYOND * middle)) > SELDOM
+        or _spread(ratio) > rules.same
+        or float(np.mean(loaded > rules.beyond * middle)) > rules.seldom
     ):
         return None
     return middle
@@ -171,12 +160,13 @@ class Contacts:
     """Whether each contact slides, and whether it bears load `(t, c)` each."""
 
 
-def contacts(signals: Signals, place: int) -> Contacts | None:
+def contacts(signals: Signals, place: int, rules: GroundRules) -> Contacts | None:
     """How a foot is pushed and moves; None where forces or the base's velocity are unknown.
 
     Args:
         signals: of a log.
         place: of the foot.
+        rules: from when on a contact slides.
     """
     feet = footings(signals)
     if not feet:
@@ -194,15 +184,21 @@ def contacts(signals: Signals, place: int) -> Contacts | None:
         way = force[..., :2] / size[..., None]
         against = -(slide * way).sum(-1)
         across = np.linalg.norm(slide + against[..., None] * way, axis=-1)
-        slides = loaded & (against > FAST) & (against > STRAIGHT * across)
+        slides = loaded & (against > rules.slides) & (against > rules.straight * across)
         edges = np.abs(force[..., :2]).sum(-1) / load
         in_contact = Contacts(load, size / load, edges, against, slides, loaded)
     return in_contact if loaded.any() else None
 
 
-def _sliding(signals: Signals, place: int) -> _Sliding | None:
+def _all_sliding(signals: Sequence[Signals], place: int, rules: GroundRules) -> list[_Sliding]:
+    """When a foot slides in those logs in which it does."""
+    logs = (_sliding(log, place, rules) for log in signals)
+    return [sliding for sliding in logs if sliding is not None]
+
+
+def _sliding(signals: Signals, place: int, rules: GroundRules) -> _Sliding | None:
     """When a foot slides in a log, if it does."""
-    of = contacts(signals, place)
+    of = contacts(signals, place, rules)
     if of is None or not of.slides.any():
         return None
     slides, loaded = of.slides, of.loaded

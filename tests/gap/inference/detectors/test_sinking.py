@@ -6,17 +6,18 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.inference.detectors.sinking import (
-    LEAST_CONTACTS,
     Bearing,
     _apart,
     _compliance,
     bearings,
     sinks,
 )
+from hyperleg_design.gap.inference.rules import GroundRules
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.ground import footings
 from hyperleg_design.gap.signals.loading import load_subject
 
+RULES = GroundRules()
 MEAN, CHANGE = 60.0, 25.0
 """Load of a pad and its amplitude [N]."""
 
@@ -75,13 +76,19 @@ def nominal(subject):
     """Compliance of the model's own ground under each pad about these loads [m/N]."""
     log = condition(standing(subject, 0.0), subject)
     return np.array(
-        [pad.nominal_slope for foot in range(len(subject.feet)) for pad in bearings(log, foot)]
+        [
+            pad.nominal_slope
+            for foot in range(len(subject.feet))
+            for pad in bearings(log, foot, RULES)
+        ]
     )
 
 
 def found(subject, *logs, references=()):
     return sinks(
-        [condition(one, subject) for one in logs], [condition(one, subject) for one in references]
+        [condition(one, subject) for one in logs],
+        [condition(one, subject) for one in references],
+        RULES,
     )
 
 
@@ -151,13 +158,13 @@ def test_a_foot_with_one_pad_tells_by_stretches_of_its_log():
     load = MEAN + CHANGE * np.sin(2 * np.pi * 0.7 * time)
     height = 0.02 - 2e-5 * load + 2e-4 * rng.normal(size=len(time))
     pad = Bearing(load, height, -1e-5 * load)
-    assert _compliance([pad]) is None
-    stretches = _apart([pad])
-    assert len(stretches) == LEAST_CONTACTS
+    assert _compliance([pad], RULES) is None
+    stretches = _apart([pad], RULES)
+    assert len(stretches) == RULES.contacts
     np.testing.assert_array_equal(np.concatenate([one.load for one in stretches]), load)
-    scale, error = _compliance(stretches)
+    scale, error = _compliance(stretches, RULES)
     assert scale == pytest.approx(2.0, abs=4 * error)
     assert error < 0.1
     still = np.where(time < 4, MEAN, load)
-    assert len(_apart([Bearing(still, height, -1e-5 * still)])) == LEAST_CONTACTS / 2
-    assert _apart([pad] * LEAST_CONTACTS) == [pad] * LEAST_CONTACTS
+    assert len(_apart([Bearing(still, height, -1e-5 * still)], RULES)) == RULES.contacts / 2
+    assert _apart([pad] * RULES.contacts, RULES) == [pad] * RULES.contacts

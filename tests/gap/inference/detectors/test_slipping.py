@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.inference.detectors.slipping import slips
+from hyperleg_design.gap.inference.rules import GroundRules
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 
+RULES = GroundRules()
 LOAD = 60.0
 """On each pad [N]."""
 
@@ -80,8 +82,8 @@ def test_what_moves_at_one_speed_alone_may_creep(subject):
         return 0.23 * speed / 0.018
 
     slow = condition(pushed(subject, creeping, speed=0.018), subject)
-    assert slips([slow]) == ()
-    assert slips([condition(pushed(subject, dry(0.23)), subject)])
+    assert slips([slow], (), RULES) == ()
+    assert slips([condition(pushed(subject, dry(0.23)), subject)], (), RULES)
 
 
 def pyramid(coefficient):
@@ -93,7 +95,9 @@ def pyramid(coefficient):
 
 def found(subject, *logs, references=()):
     return slips(
-        [condition(one, subject) for one in logs], [condition(one, subject) for one in references]
+        [condition(one, subject) for one in logs],
+        [condition(one, subject) for one in references],
+        RULES,
     )
 
 
