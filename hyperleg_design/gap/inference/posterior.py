@@ -101,8 +101,10 @@ def posterior_of(
     )
     changes = [place for place in ranked if not best.candidates[place].standing]
     alike = {place: _alike(result, best, place, rules) for place in changes}
-    names = {place: (best.candidates[place].name, *alike[place]) for place in changes}
-    certain = {place: sum(probability[name] for name in names[place]) for place in changes}
+    certain = {
+        place: probability[best.candidates[place].name] + sum(probability[a] for a in alike[place])
+        for place in changes
+    }
     order, minor = _main_causes(best, certain, shares, rules)
     standing = tuple(place for place in ranked if best.candidates[place].standing)
     rivals = _rivals(result, best)
