@@ -12,7 +12,7 @@ data cannot tell apart, and what remains.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -61,6 +61,26 @@ class Posterior:
     """Share of the gap that something unlisted makes."""
 
 
+def changes_first(result: Result, rules: InferenceRules) -> Result:
+    """Put a hypothesis first whose causes act in the logs under test alone, where one that is about
+    as probable has the same causes in all logs: the references show nothing of them.
+
+    Args:
+        result: of the search.
+        rules: of the inference.
+    """
+    best = result.best
+    alike = [
+        other
+        for other in result.hypotheses
+        if best.score - other.score < rules.posterior.alike
+        and sorted(name[:2] for name in other.names) == sorted(name[:2] for name in best.names)
+    ]
+    first = min(alike, key=lambda other: (sum(name[2] for name in other.names), -other.score))
+    others = (other for other in result.hypotheses if other is not first)
+    return replace(result, hypotheses=(first, *others))
+
+
 def posterior_of(
     result: Result, evidence: Evidence, size: GapSize, rules: InferenceRules
 ) -> Posterior:
@@ -76,10 +96,11 @@ def posterior_of(
     scores = np.array([hypothesis.score for hypothesis in result.hypotheses])
     weights = np.exp(own.temperature * (scores - scores.max()))
     weights /= weights.sum()
-    best = result.best
+    best, anywhere = result.best, untold(result)
     probability: dict[Name, float] = {}
     for hypothesis, weight in zip(result.hypotheses, weights.tolist(), strict=True):
         names = {name for candidate in hypothesis.candidates for name in _stated(candidate)}
+        names |= {(*name[:2], False) for name in names if name in anywhere}
         for name in sorted(names):
             probability[name] = probability.get(name, 0.0) + weight
     highest = own.highest(bool(evidence.references))
@@ -136,6 +157,17 @@ def posterior_of(
         closed=closed,
         remainder=remainder,
     )
+
+
+def untold(result: Result) -> set[Name]:
+    """Name the causes of the most probable hypothesis that act in all logs, and that the first one
+    has in the logs under test alone, see `changes_first`.
+
+    Args:
+        result: of the search, as `changes_first` orders it.
+    """
+    likeliest = max(result.hypotheses, key=lambda hypothesis: hypothesis.score)
+    return set(likeliest.names) - set(result.best.names)
 
 
 def _main_causes(

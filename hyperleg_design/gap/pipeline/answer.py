@@ -28,7 +28,7 @@ from hyperleg_design.gap.inference.hypotheses.hypothesis import (
 from hyperleg_design.gap.inference.hypotheses.reference_differences import Difference
 from hyperleg_design.gap.inference.hypotheses.search import Result
 from hyperleg_design.gap.inference.intervals import intervals
-from hyperleg_design.gap.inference.posterior import Posterior, expanded
+from hyperleg_design.gap.inference.posterior import Posterior, expanded, untold
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline.unexplained import Unexplained
 from hyperleg_design.gap.results.diagnosis import (
@@ -295,6 +295,10 @@ class Answer:
             if cause.standing
         )
         texts += self.minor()
+        texts += [
+            f"{effect} at {place}: the reference logs do not show whether it acts in them, too"
+            for effect, place in sorted(_placed(name) for name in untold(self.result))
+        ]
         texts += self.ends()
         if has_placeholders(self.evidence.signals[0].subject):
             texts.append(

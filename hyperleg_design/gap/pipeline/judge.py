@@ -17,7 +17,7 @@ from hyperleg_design.gap.inference.hypotheses.reference_differences import (
     differences,
 )
 from hyperleg_design.gap.inference.hypotheses.search import Result, Search
-from hyperleg_design.gap.inference.posterior import posterior_of
+from hyperleg_design.gap.inference.posterior import changes_first, posterior_of
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline.answer import Answer
 from hyperleg_design.gap.results.diagnosis import Diagnosis
@@ -65,7 +65,7 @@ def judge_signals(
         difference, search, result = min(tried, key=lambda entry: _gain(*entry[1:]))
         references = search.evidence.references
         apart.append(difference)
-    evidence = search.evidence
+    evidence, result = search.evidence, changes_first(result, rules)
     held = predicted(evidence, result.best, rules)
     size = GapSize.of(evidence, result.best, held, rules)
     posterior = posterior_of(result, evidence, size, rules)

@@ -6,7 +6,7 @@ import pytest
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.hypotheses.hypothesis import Candidate, Hypothesis
 from hyperleg_design.gap.inference.hypotheses.search import Result
-from hyperleg_design.gap.inference.posterior import posterior_of
+from hyperleg_design.gap.inference.posterior import changes_first, posterior_of, untold
 from hyperleg_design.gap.inference.rules import InferenceRules
 
 RULES = InferenceRules()
@@ -39,9 +39,9 @@ def quiet(noise, rules):
     return 0.0, -9.0
 
 
-def answer(*hypotheses, closed=1.0, usual=None, references=(), alone=None):
+def answer(*hypotheses, closed=1.0, usual=None, references=(), alone=None, ordered=True):
     """`alone`: what each cause closes, by its size."""
-    ranked = tuple(sorted(hypotheses, key=lambda one: -one.score))
+    ranked = tuple(sorted(hypotheses, key=lambda one: -one.score) if ordered else hypotheses)
     nothing_tested = {
         "bands_tested": np.zeros(0, int),
         "usual_noise": lambda noise, rules: np.zeros(0),
@@ -136,6 +136,21 @@ def test_what_stands_in_the_references_is_no_change():
     assert found.verdict == "none"
     assert not found.order
     assert found.standing == (0,)
+
+
+@pytest.mark.parametrize(("behind", "verdict"), [(1.0, "explained"), (4.0, "none")])
+def test_what_references_do_not_show_is_a_cause_under_test(behind, verdict):
+    """References that show nothing of a cause leave it as probable in all logs as under test."""
+    standing, change = ("a", "x", True), ("a", "x")
+    ranked = hypothesis(30.0, standing), hypothesis(30.0 - behind, change), hypothesis(0.0)
+    first = changes_first(Result(ranked, ()), RULES)
+    assert len(first.hypotheses) == 3
+    assert untold(first) == ({standing} if verdict == "explained" else set())
+    found = answer(*first.hypotheses, ordered=False)
+    assert found.verdict == verdict
+    if verdict == "explained":
+        assert found.probability["a", "x", False] == RULES.posterior.most_certain_alone
+        assert not found.standing
 
 
 def test_a_change_beside_what_stands_is_explained():
