@@ -56,7 +56,7 @@ def detectable(search: Search, beside: Hypothesis | None = None) -> tuple[Detect
 
     Returns:
         Of each effect and place that the logs show: for each size of a linear effect, and for the
-        size of a nonlinear one that has a single size.
+        size of a nonlinear one that has a single size, whatever its choices are.
     """
     scales = (beside or search.fits.null).scales
     subject = search.evidence.signals[0].subject
@@ -75,14 +75,15 @@ def detectable(search: Search, beside: Hypothesis | None = None) -> tuple[Detect
             i = sizes[0]
             change = np.abs(traced.values[:, i] - effect.nulls[i])
             moved = change > 0
-            if moved.any():
-                plain = moved & usual_shape(effect, place, subject, traced.values)
-                tried = plain if plain.any() else moved
-                first = int(np.argmin(np.where(tried, change, np.inf)))
+            plain = moved & usual_shape(effect, place, subject, traced.values)
+            tried = plain if plain.any() else moved
+            for first in _smallest(
+                np.where(tried, change, np.inf), _choices(effect, traced.values)
+            ):
                 entries.append((name, place, i, float(change[first]), most[i], information[first]))
     rules = search.rules.cause
     chance = rules.changed if search.evidence.references else rules.probability
-    sizes_shown = []
+    least: dict[tuple[str, str, int], tuple[float, float]] = {}
     for name, place, i, unit_size, limit, own in entries:
         hypotheses = len(search.count) * search.count[name]
         odds = float(np.log(hypotheses / chance))
@@ -90,11 +91,28 @@ def detectable(search: Search, beside: Hypothesis | None = None) -> tuple[Detect
         usual = usual_error(search.evidence, search.rules, (name, place, i))
         beyond = usual + OFTEN * search.rules.posterior.interval * deviation
         size = max((np.sqrt(2 * odds) + OFTEN) * deviation, beyond)
+        # nobody knows which choice holds: what logs show is shown whichever does
+        least[name, place, i] = max(least.get((name, place, i), (0.0, limit)), (size, limit))
+    sizes_shown = []
+    for (name, place, i), (size, limit) in least.items():
         parameter = EFFECTS[name].parameters[i]
         if 0 < size <= limit:
             unit = unit_at(subject, EFFECTS[name].kind, place, parameter.unit)
             sizes_shown.append(Detectable(name, place, parameter.name, float(size), unit))
     return tuple(sizes_shown)
+
+
+def _choices(effect: Effect, values: np.ndarray) -> np.ndarray:
+    """Choices among parameters of an effect `(k, choices)`, of values `(k, parameters)`."""
+    return values[:, [place for place, p in enumerate(effect.parameters) if p.choices]]
+
+
+def _smallest(change: np.ndarray, choices: np.ndarray) -> list[int]:
+    """Find the smallest finite change `(k,)` of each set of choices `(k, choices)`."""
+    _, kind = np.unique(choices, axis=0, return_inverse=True)
+    kind, order = kind.ravel(), np.argsort(change, kind="stable")
+    first = {int(kind[place]): int(place) for place in order[::-1] if np.isfinite(change[place])}
+    return sorted(first.values())
 
 
 def usual_shape(effect: Effect, place: str, subject: Subject, values: np.ndarray) -> np.ndarray:
@@ -112,7 +130,7 @@ def usual_shape(effect: Effect, place: str, subject: Subject, values: np.ndarray
     Returns:
         `(k,)`.
     """
-    shape = [i for i, parameter in enumerate(effect.parameters) if parameter.shape]
+    shape = [i for i, p in enumerate(effect.parameters) if p.shape and not p.choices]
     return np.asarray(
         np.isclose(values[:, shape], effect.example(place, subject)[shape], atol=1e-9).all(1)
     )

@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import norm
 
 from hyperleg_design.gap.effects import EFFECTS
-from hyperleg_design.gap.inference.detectable import detectable, usual_shape
+from hyperleg_design.gap.inference.detectable import _choices, _smallest, detectable, usual_shape
 from hyperleg_design.gap.inference.hypotheses.cause_prior import usual_error
 
 
@@ -104,6 +104,17 @@ def test_the_answers_file_holds_all_fields(sizes):
         "change": sizes[0].change,
         "unit": sizes[0].unit,
     }
+
+
+def test_what_logs_show_is_shown_whichever_choice_holds():
+    """Of play, the smallest angle of each side that encoders may sit on, and of each friction."""
+    effect = EFFECTS["backlash"]
+    values = np.array(
+        [[0.01, 0.0, 1.0, 0.0], [0.003, 0.0, 1.0, 0.0], [0.03, 1.0, 1.0, 0.0], [0.0, 1.0, 1.0, 1.0]]
+    )
+    change = np.where(values[:, 0] > 0, values[:, 0], np.inf)
+    assert _smallest(change, _choices(effect, values)) == [1, 2]
+    assert _smallest(change, np.zeros((4, 0))) == [1]
 
 
 def test_a_load_of_grams_far_from_its_link_is_no_measure_of_what_shows(search):
