@@ -266,6 +266,7 @@ class Training:
                 algorithm.process_env_step(
                     self.observations, reward, torch.from_numpy(step.ending != 0), {}
                 )
+            algorithm.designs = None if self.sampler is None else self.sampler.assigned
             algorithm.compute_returns(self.observations)
         losses = self._update()
         measures = self.meter.read()

@@ -6,11 +6,13 @@ import contextlib
 import io
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import torch
 from rsl_rl.algorithms import PPO
 from rsl_rl.models import MLPModel
 from rsl_rl.storage import RolloutStorage
 from tensordict import TensorDict
+from torch import Tensor
 
 from hyperleg_design.learning.learner.device import HOST, learning_on
 from hyperleg_design.learning.learner.modulation import ModulatedLayers
@@ -27,13 +29,37 @@ QUIET = 0.01
 """Factor on the usual size of the actor's last layer at the start. It lets all robots begin near
 their default posture, and makes the first policy its own mirror image. Otherwise the probability
 ratios of mirrored samples are mostly clipped, and nothing is learnt from them."""
+LEAST = 0.01
+"""Deviation of a design's advantages below which they are not magnified, over that of all [-]."""
 DESIGN = "design."
 """Beginning of the names of columns that tell the design."""
 GROUPS = {"actor": ["policy"], "critic": ["critic"]}
 """Observation groups of each network."""
 
 
-class IterationPPO(PPO):  # type: ignore[misc]
+class DesignPPO(PPO):  # type: ignore[misc]
+    """PPO that weighs many designs alike: the advantages of each have mean 0 and deviation 1.
+
+    Standardised all together, the advantages of designs with large rewards or losses, such as those
+    that fall, outweigh the others, on whose walks less is learned (as returns of many tasks are
+    rescaled task by task; Hessel et al., AAAI 2019).
+    """
+
+    designs: np.ndarray | None = None
+    """Number of the design of each simulation `(n,)`; None where all have the same."""
+
+    def compute_returns(self, obs: TensorDict) -> None:
+        """Compute returns and advantages of the rollout.
+
+        Args:
+            obs: observations after it.
+        """
+        super().compute_returns(obs)
+        if self.designs is not None:
+            self.storage.advantages = standardised(self.storage.advantages, self.designs)
+
+
+class IterationPPO(DesignPPO):
     """PPO whose learning rate is adapted once an iteration, on the divergence in the last epoch, of
     unmirrored samples.
 
@@ -78,7 +104,7 @@ class IterationPPO(PPO):  # type: ignore[misc]
             group["lr"] = rate
 
 
-def make_algorithm(preset: Preset, environment: Environment, observations: TensorDict) -> PPO:
+def make_algorithm(preset: Preset, environment: Environment, observations: TensorDict) -> DesignPPO:
     """Make PPO for an environment; networks are drawn from torch's random numbers.
 
     Args:
@@ -110,7 +136,7 @@ def make_algorithm(preset: Preset, environment: Environment, observations: Tenso
             "data_augmentation_func": mirrors.append_mirrored,
             "use_data_augmentation": True,
         }
-    algorithm = (IterationPPO if once else PPO)(
+    algorithm = (IterationPPO if once else DesignPPO)(
         actor,
         critic,
         storage,
@@ -134,6 +160,24 @@ def make_algorithm(preset: Preset, environment: Environment, observations: Tenso
     if isinstance(algorithm, IterationPPO):
         algorithm.bounds = (settings.slowest, settings.fastest)
     return algorithm
+
+
+def standardised(advantages: Tensor, designs: np.ndarray) -> Tensor:
+    """Bring the advantages of each design to mean 0 and deviation 1.
+
+    Args:
+        advantages: `(t, n, 1)`.
+        designs: number of the design of each simulation `(n,)`.
+
+    Returns:
+        `(t, n, 1)`.
+    """
+    own = advantages.clone()
+    for design in np.unique(designs):
+        rows = torch.from_numpy(np.flatnonzero(designs == design))
+        part = advantages[:, rows]
+        own[:, rows] = (part - part.mean()) / (part.std() + LEAST)
+    return own
 
 
 def make_network(network: Network, observations: TensorDict, kind: str, outputs: int) -> MLPModel:

@@ -12,7 +12,12 @@ from hyperleg_design.simulation.tasks import load_task
 torch = pytest.importorskip("torch")
 pytest.importorskip("rsl_rl")
 
-from hyperleg_design.learning.learner.algorithm import IterationPPO, as_tensors, make_algorithm  # noqa: E402
+from hyperleg_design.learning.learner.algorithm import (  # noqa: E402
+    IterationPPO,
+    as_tensors,
+    make_algorithm,
+    standardised,
+)
 from hyperleg_design.learning.preset import Preset  # noqa: E402
 
 
@@ -100,3 +105,17 @@ def test_the_other_ways_learn_too(
     assert any(
         not torch.equal(a, b) for a, b in zip(before, algorithm.actor.parameters(), strict=True)
     )
+
+
+def test_advantages_of_each_design_have_mean_zero_and_deviation_one() -> None:
+    designs = np.array([0, 0, 2, 2, 2, 5])
+    sizes = torch.tensor([1.0, 1.0, 30.0, 30.0, 30.0, 0.0])
+    generator = torch.Generator().manual_seed(3)
+    advantages = 4.0 + sizes[:, None] * torch.randn(32, 6, 1, generator=generator)
+    own = standardised(advantages, designs)
+    for rows in ([0, 1], [2, 3, 4]):
+        assert float(own[:, rows].mean()) == pytest.approx(0.0, abs=1e-5)
+        assert float(own[:, rows].std()) == pytest.approx(1.0, abs=0.02)
+    assert float(own[:, 5].abs().max()) == 0.0
+    order = torch.argsort(advantages[:, 2:5].flatten())
+    assert torch.equal(order, torch.argsort(own[:, 2:5].flatten()))
