@@ -78,8 +78,9 @@ def motor_table(analysis: Mapping[str, Any]) -> tuple[list[str], list[list[Any]]
     Returns:
         Heads, and a row a motor.
     """
-    heads = ["motor", "type", "gear", "peak [Nm]", "rated [Nm]", "no load [rad/s]", "Cp [W/Nm^2]"]
-    keys = ("peak_torque", "rated_torque", "no_load_speed", "power_constant")
+    heads = ["motor", "type", "gear", "peak [Nm]", "rated [Nm]", "stall [Nm]", "no load [rad/s]"]
+    heads.append("Cp [W/Nm^2]")
+    keys = ("peak_torque", "rated_torque", "stall_torque", "no_load_speed", "power_constant")
     return heads, [
         [name, m["motor"], m["gear"], *(float(m[k]) for k in keys)]
         for name, m in analysis["motors"].items()

@@ -254,7 +254,7 @@ def reflected_inertia(matrix: np.ndarray, rotor_inertia: np.ndarray) -> np.ndarr
 
 
 def derate(design: RobotDesign) -> np.ndarray:
-    """Collect the fraction of the summed peak torque that is counted on at each joint that moves.
+    """Collect the fraction of the motors' torques that is counted on at each joint that moves.
 
     Args:
         design: a robot or batch.
@@ -272,7 +272,8 @@ def derate(design: RobotDesign) -> np.ndarray:
 
 def max_joint_torque(design: RobotDesign, posture: str = "standing") -> np.ndarray:
     """Largest torque of each joint alone, derated as in Table I, `(..., joints)` [Nm]: derate * sum
-    |M| tau_peak.
+    |M| tau, with tau of each motor at standstill, its peak torque or its stall torque if that is
+    smaller.
 
     Args:
         design: a robot, or a batch of `n` robots.
@@ -281,8 +282,8 @@ def max_joint_torque(design: RobotDesign, posture: str = "standing") -> np.ndarr
     Returns:
         Torques, each reached only while every motor of the joint pulls for it [Nm].
     """
-    peak = motor_arrays(design).peak_torque[..., : len(motor_names(design))]
-    return derate(design) * joint_torque(np.abs(joint_from_motor(design, posture)), peak)
+    limit = motor_arrays(design).standstill_torque[..., : len(motor_names(design))]
+    return derate(design) * joint_torque(np.abs(joint_from_motor(design, posture)), limit)
 
 
 def single_joint_speed(design: RobotDesign, posture: str = "walking") -> np.ndarray:

@@ -50,7 +50,7 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
     if design.batch_shape:
         raise InputError(design.name, "", None, "holds a batch of designs; take one of them")
     joints, matrix = transmission.joint_names(design), transmission.joint_from_motor(design)
-    peak = motor_envelope(design).peak_torque
+    limit = motor_envelope(design).standstill_torque
     default = tree_limb.default_position(design)
     unknown = design.trunk.motion == "floating" and not design.pad_sections
 
@@ -73,12 +73,12 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
         "reduction": matrix.tolist(),
         "max_joint_torque": named(transmission.max_joint_torque(design)),
         "torque_alone": named(
-            [zonotope.alone(matrix, -peak, peak, row) for row in range(len(joints))]
+            [zonotope.alone(matrix, -limit, limit, row) for row in range(len(joints))]
         ),
         "single_joint_speed": named(transmission.single_joint_speed(design)),
         "reflected_inertia": leg_reflected_inertia(design).tolist(),
         "link_inertia": named([limb_masses.behind(design, name, default)[2] for name in joints]),
-        "zonotope_to_box_volume": float(zonotope.zonotope_to_box_volume(matrix, -peak, peak)),
+        "zonotope_to_box_volume": float(zonotope.zonotope_to_box_volume(matrix, -limit, limit)),
         "linkages": {
             rod.motor: {
                 "reduction": {joint: list(ends) for joint, ends in rod.reduction.items()},
