@@ -33,9 +33,9 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
 
     Returns:
         Plain numbers, lists and mappings, SI units, ready for JSON: `limbs` (names of the copies,
-        none where the robot is described as a whole),
-        `total_mass`, `limb_mass` [kg], `standing_height` [m], `link_mass` [kg], `reduction` (joints
-        x motors), `max_joint_torque` [Nm] (derated), `torque_alone` [Nm] (the others at zero, not
+        none where the robot is described as a whole), `total_mass`, `limb_mass` [kg] (of the links
+        that move against the root), `standing_height` [m], `link_mass` [kg], `reduction` (joints x
+        motors), `max_joint_torque` [Nm] (derated), `torque_alone` [Nm] (the others at zero, not
         derated), `single_joint_speed` [rad/s], `reflected_inertia` [kg m^2] (joints x joints),
         `link_inertia` [kg m^2] (of what is behind each joint, about it, rotors not in it),
         `zonotope_to_box_volume` [-], `motors`, `linkages` (for each motor with a rod `reduction`,

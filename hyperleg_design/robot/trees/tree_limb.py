@@ -144,6 +144,22 @@ def descendants(design: TreeDesign, joint: str) -> list[str]:
     ]
 
 
+def trunk_links(design: TreeDesign) -> tuple[str, ...]:
+    """List the links of the trunk: the root link, and all that fixed joints bolt to it.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Names of the links, the root first.
+    """
+    links = [str(design.trunk.link)]
+    for joint in design.all_joints.values():
+        if joint.type == "fixed" and joint.parent in links:
+            links.append(str(joint.child))
+    return tuple(links)
+
+
 def copied(copy: Any, place: np.ndarray, *, move: bool = False) -> np.ndarray:
     """Transform a place of the limb to that of a copy of the limb.
 
