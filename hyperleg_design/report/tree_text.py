@@ -133,7 +133,7 @@ def force_lines(analysis: Mapping[str, Any]) -> list[str]:
         f"largest {direction} force of {limb}, default posture, other components free: "
         f"{force['force']:.4g} N, "
         f"{force['body_weights']:.3g} body weights; at their limit: "
-        f"{', '.join(force['binding']) or 'no motor, the floor slips'}"
+        f"{_at_limit(force) or 'no motor, the floor slips'}"
         for direction, force in forces.items()
         if force["force"] is not None
     ]
@@ -145,3 +145,8 @@ def force_lines(analysis: Mapping[str, Any]) -> list[str]:
         f"largest {' and '.join(directions)} force of {limb}: none; {reason}"
         for reason, directions in reasons.items()
     ]
+
+
+def _at_limit(force: Mapping[str, Any]) -> str:
+    """Motors, and joints at their derated torque, that allow no more force."""
+    return ", ".join([*force["binding"], *(f"joint {name} (derated)" for name in force["derated"])])

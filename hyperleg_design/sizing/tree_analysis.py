@@ -41,8 +41,8 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
         `zonotope_to_box_volume` [-], `motors`, `linkages` (for each motor with a rod `reduction`,
         its smallest and largest by joint, `default` and `beyond`, as `RodRange` has them), and
         `contact_force` by direction: `force` [N] (the largest component of one limb's force on the
-        floor that way; the other components are whatever they must be),
-        `body_weights` [-] and `binding` motors, or the `reason` why there is none.
+        floor that way; the other components are whatever they must be), `body_weights` [-],
+        `binding` motors and joints at their `derated` torque, or the `reason` why there is none.
 
     Raises:
         InputError: a batch of designs.
@@ -92,14 +92,15 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
 
 
 def _forces(design: TreeDesign) -> dict[str, Any]:
-    """Largest contact forces of the first limb in the default posture, by direction."""
+    """Largest contact forces of the first limb in the default posture, derated, by direction."""
     forces: dict[str, Any] = {}
     for direction in DIRECTIONS:
         if not design.pad_sections:
             forces[direction] = {"force": None, "reason": NO_PADS}
             continue
         try:
-            force = largest_force(design, "default", direction, side=design.copies[0])
+            side = design.copies[0]
+            force = largest_force(design, "default", direction, side=side, derated=True)
         except InfeasibleError as error:
             forces[direction] = {"force": None, "reason": str(error)}
             continue
@@ -107,6 +108,7 @@ def _forces(design: TreeDesign) -> dict[str, Any]:
             "force": float(force.force @ DIRECTIONS[direction]),
             "body_weights": force.body_weights,
             "binding": list(force.binding),
+            "derated": list(force.derated),
         }
     return forces
 
