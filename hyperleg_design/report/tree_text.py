@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from hyperleg_design.report.text import table
+from hyperleg_design.robot.checks.check_pads import pads_text
 
 JOINTS_NOTE = (
     "max torque: derated, one joint at its best whatever the others do; alone: the others at zero "
@@ -126,7 +127,7 @@ def force_lines(analysis: Mapping[str, Any]) -> list[str]:
         analysis: as `tree_analysis.analyze_tree` returns it.
 
     Returns:
-        A line a direction that has a force, and a line a reason.
+        A line a direction that has a force, a line a reason, and one where feet are in the air.
     """
     forces, limb = analysis["contact_force"], _limb(analysis)
     lines = [
@@ -137,6 +138,11 @@ def force_lines(analysis: Mapping[str, Any]) -> list[str]:
         for direction, force in forces.items()
         if force["force"] is not None
     ]
+    if lines and analysis["hanging_pads"]:
+        lines.append(
+            f"{pads_text(analysis['hanging_pads'])}; these forces are those of the lowest pads of "
+            f"{limb} alone"
+        )
     reasons: dict[str, list[str]] = {}
     for direction, force in forces.items():
         if force["force"] is None:

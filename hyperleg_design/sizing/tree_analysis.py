@@ -10,6 +10,7 @@ import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
 from hyperleg_design.robot import transmission
+from hyperleg_design.robot.checks.check_pads import hanging_pads
 from hyperleg_design.robot.kinematics.dimensions import limb_mass, standing_height, total_mass
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.motors import find_motor
@@ -42,7 +43,9 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
         its smallest and largest by joint, `default` and `beyond`, as `RodRange` has them), and
         `contact_force` by direction: `force` [N] (the largest component of one limb's force on the
         floor that way; the other components are whatever they must be), `body_weights` [-],
-        `binding` motors and joints at their `derated` torque, or the `reason` why there is none.
+        `binding` motors and joints at their `derated` torque, or the `reason` why there is none;
+        `hanging_pads` (heights [m] above the lowest pad of pads in the air, by name; the forces are
+        those of the lowest pads of the limb).
 
     Raises:
         InputError: a batch of designs.
@@ -88,6 +91,7 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
             for rod in rod_ranges(design)
         },
         "contact_force": _forces(design),
+        "hanging_pads": hanging_pads(design),
     }
 
 
