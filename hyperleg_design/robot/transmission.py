@@ -150,17 +150,24 @@ def joint_from_motor(design: RobotDesign, posture: str | None = None) -> np.ndar
     """M over the joints that move and the motors that are there, `(..., joints, motors)` [-].
 
     A locked toe whose motor stays gives a 6 x 7 matrix: that motor still helps knee and ankle. A
-    design that writes its tree out has one posture, its default, whatever is asked for.
+    design that writes its tree out has one posture, its default, which all names mean.
 
     Args:
         design: a robot, or a batch of `n` robots.
-        posture: `standing` or `walking`, the paper's two; the design's own by default.
+        posture: `standing` or `walking`, the paper's two, or `default` of a design that writes its
+            tree out; the design's own by default.
 
     Returns:
         M with tau_joint = M tau_motor and motor_velocity = M^T joint_velocity; power is the
         same on both sides.
+
+    Raises:
+        InputError: no such posture.
     """
     if isinstance(design, TreeDesign):
+        if posture not in (None, "default", *POSTURES):
+            remedy = f"expects default, which is all that {design.name} has; or leave it out"
+            raise InputError("posture", "", posture, remedy)
         return limb_actuation.joint_from_motor(design)
     return full_joint_from_motor(cast("HyperLeg", design), posture)[
         ..., : len(joint_names(design)), : len(motor_names(design))

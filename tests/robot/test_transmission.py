@@ -43,6 +43,17 @@ def test_the_designs_own_posture_is_the_default(hyperleg):
         transmission.joint_from_motor(hyperleg, "running")
 
 
+def test_a_tree_has_one_posture_and_refuses_names_of_others():
+    design = leg()
+    for posture in ("default", "walking", "standing"):
+        np.testing.assert_array_equal(
+            transmission.joint_from_motor(design, posture), [[7.0, 0.0], [0.0, 9.0]]
+        )
+    for function in (transmission.joint_from_motor, transmission.max_joint_torque):
+        with pytest.raises(InputError, match=r"posture.*garbage.*default"):
+            function(design, "garbage")
+
+
 def test_the_maxima_of_table_one(hyperleg):
     printed = [126.0, 126.0, 126.0, 212.0, 111.7, 48.4, 46.8]
     np.testing.assert_allclose(transmission.max_joint_torque(hyperleg), printed, rtol=1e-3)
