@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from hyperleg_design.report.text import table
+from hyperleg_design.robot.checks.check_pads import pads_text
 
 JOINTS_NOTE = (
     "max torque: derated, one joint at its best whatever the others do; alone: the others at zero "
@@ -78,8 +79,9 @@ def motor_table(analysis: Mapping[str, Any]) -> tuple[list[str], list[list[Any]]
     Returns:
         Heads, and a row a motor.
     """
-    heads = ["motor", "type", "gear", "peak [Nm]", "rated [Nm]", "no load [rad/s]", "Cp [W/Nm^2]"]
-    keys = ("peak_torque", "rated_torque", "no_load_speed", "power_constant")
+    heads = ["motor", "type", "gear", "peak [Nm]", "rated [Nm]", "stall [Nm]", "no load [rad/s]"]
+    heads.append("Cp [W/Nm^2]")
+    keys = ("peak_torque", "rated_torque", "stall_torque", "no_load_speed", "power_constant")
     return heads, [
         [name, m["motor"], m["gear"], *(float(m[k]) for k in keys)]
         for name, m in analysis["motors"].items()
@@ -125,17 +127,22 @@ def force_lines(analysis: Mapping[str, Any]) -> list[str]:
         analysis: as `tree_analysis.analyze_tree` returns it.
 
     Returns:
-        A line a direction that has a force, and a line a reason.
+        A line a direction that has a force, a line a reason, and one where feet are in the air.
     """
     forces, limb = analysis["contact_force"], _limb(analysis)
     lines = [
         f"largest {direction} force of {limb}, default posture, other components free: "
         f"{force['force']:.4g} N, "
         f"{force['body_weights']:.3g} body weights; at their limit: "
-        f"{', '.join(force['binding']) or 'no motor, the floor slips'}"
+        f"{_at_limit(force) or 'no motor, the floor slips'}"
         for direction, force in forces.items()
         if force["force"] is not None
     ]
+    if lines and analysis["hanging_pads"]:
+        lines.append(
+            f"{pads_text(analysis['hanging_pads'])}; these forces are those of the lowest pads of "
+            f"{limb} alone"
+        )
     reasons: dict[str, list[str]] = {}
     for direction, force in forces.items():
         if force["force"] is None:
@@ -144,3 +151,8 @@ def force_lines(analysis: Mapping[str, Any]) -> list[str]:
         f"largest {' and '.join(directions)} force of {limb}: none; {reason}"
         for reason, directions in reasons.items()
     ]
+
+
+def _at_limit(force: Mapping[str, Any]) -> str:
+    """Motors, and joints at their derated torque, that allow no more force."""
+    return ", ".join([*force["binding"], *(f"joint {name} (derated)" for name in force["derated"])])

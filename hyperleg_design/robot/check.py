@@ -17,6 +17,7 @@ from hyperleg_design.reading import read_yaml
 from hyperleg_design.robot.checks.check_housing import check_housing
 from hyperleg_design.robot.checks.check_mjcf import check_mjcf
 from hyperleg_design.robot.checks.check_motor import check_motor
+from hyperleg_design.robot.checks.check_pads import check_pads
 from hyperleg_design.robot.checks.check_urdf import check_urdf
 from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.checks.urdf_xml import parse_xml
@@ -153,7 +154,7 @@ def _check_design_file(path: str | Path) -> list[Finding]:
     findings += _narrow_ranges(design)
     if isinstance(design, TreeDesign):
         findings += [f for rod in rod_ranges(design) for f in _rod_findings(rod)]
-        findings += check_housing(design)
+        findings += [*check_housing(design), *check_pads(design)]
     try:
         if isinstance(design, Design):
             LinkageModel.of(design)

@@ -17,9 +17,10 @@ import yaml
 from typing_extensions import override
 
 from hyperleg_design import resources
-from hyperleg_design.errors import InputError, meant
+from hyperleg_design.errors import InputError
 from hyperleg_design.reading import parse_yaml, read_yaml, short_name
 from hyperleg_design.robot.ablation import ablate, states
+from hyperleg_design.robot.base_file import base_file
 from hyperleg_design.robot.checks.consistency import check_design
 from hyperleg_design.robot.masses import check_printed, lapsed
 from hyperleg_design.robot.names import LAYOUTS, PASSIVE
@@ -70,7 +71,7 @@ def load_design(
     Args:
         name: a shipped name (`hyperleg`, or an ablation of it such as `toe_removed`) or a YAML
             file. A file holds a whole design, whose `variant:` says what it is, or `base: NAME`
-            with the leaves that differ and the `variant:` to make of it.
+            (or a path) with the leaves that differ and the `variant:` to make of it.
         overrides: mapping of dotted paths to values, or texts `path=value`.
         overlays: YAML files with nested leaves, applied in order before `overrides`.
         variant: toe layout to make of it, one of `LAYOUTS`.
@@ -174,30 +175,6 @@ def design_from_mapping(data: Mapping[str, Any], where: str) -> Design:
         raise InputError(where, "variant", variant, f"expects one of {', '.join(LAYOUTS)}")
     rest = {k: v for k, v in data.items() if k not in ("name", "variant")}
     return _build(rest, str(data.get("name", where)), where, {}, variant)
-
-
-def base_file(path: Path, name: Any) -> Path:
-    """Find the file of the design that another one is based on.
-
-    Args:
-        path: of the file that names its base.
-        name: of the base.
-
-    Returns:
-        `NAME.yaml` beside that file, else the shipped design.
-
-    Raises:
-        InputError: there is neither.
-    """
-    beside = path.with_name(f"{name}.yaml")
-    if beside.is_file():
-        return beside
-    shipped = resources.names("descriptions")
-    if name not in shipped:
-        known = [*shipped, *(f.stem for f in sorted(path.parent.glob("*.yaml")) if f != path)]
-        remedy = f"no such design; {meant(str(name), known)}"
-        raise InputError(short_name(path), "base", name, remedy)
-    return resources.find("descriptions", name)
 
 
 def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:

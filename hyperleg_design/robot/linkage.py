@@ -24,6 +24,7 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.names import POSTURES
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.design import Design
@@ -203,8 +204,12 @@ class LinkageModel:
             The linkage.
 
         Raises:
-            InputError: a batch, or reductions that no such linkage gives.
+            InputError: a batch, reductions that no such linkage gives, or a design that writes its
+                tree out.
         """
+        if isinstance(design, TreeDesign):
+            remedy = "has no linkage of HyperLeg's; joint_from_motor follows the rods of its file"
+            raise InputError(design.name, "family", design.family, remedy)
         if design.batch_shape:
             raise InputError(
                 design.name,

@@ -11,9 +11,9 @@ from typing import Any, cast
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.robot.base_file import base_file
 from hyperleg_design.robot.design import (
     Design,
-    base_file,
     changed,
     design_from_mapping,
     leaf_values,
@@ -41,7 +41,7 @@ def load_robot(
 
     Args:
         name: a shipped name (`hyperleg`, `mini_cheetah`) or a YAML file. A file holds a whole
-            design, or `base: NAME` with the leaves that differ.
+            design, or `base: NAME` (or a path) with the leaves that differ.
         overrides: mapping of dotted paths to values, or texts `path=value`.
         overlays: YAML files with nested leaves, applied in order before `overrides`.
         variant: ablation to make of a HyperLeg, one of `names.VARIANTS`.

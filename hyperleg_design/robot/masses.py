@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from hyperleg_design.robot.laws import gear
 from hyperleg_design.robot.laws.laws import Laws
 from hyperleg_design.robot.mass.actuator import actuator_mass
 from hyperleg_design.robot.names import ACTUATOR_OF_MOTOR, SEGMENTS
+from hyperleg_design.robot.trees.limb_masses import LimbMasses, limb_masses
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.parameters.hyperleg import HyperLeg
@@ -78,19 +80,26 @@ mass_law = _LAWS.register
 """Registers a law of masses under the name that `masses.law` uses."""
 
 
-def mass_table(design: HyperLeg) -> MassTable:
-    """Masses of the segments by the design's law.
+@overload
+def mass_table(design: TreeDesign) -> LimbMasses: ...
+@overload
+def mass_table(design: HyperLeg) -> MassTable: ...
+def mass_table(design: HyperLeg | TreeDesign) -> MassTable | LimbMasses:
+    """Masses of the segments, or of the links of a written-out tree, by the design's law.
 
     Args:
         design: a robot, or a batch of `n` robots.
 
     Returns:
         Masses of pelvis, segments, leg and robot [kg], `()` for a robot, `(n,)` for a
-        batch.
+        batch. Of a design that writes its tree out, those of the trunk, one limb and the robot, and
+        `links`, the inertials by name of the link.
 
     Raises:
         InputError: no such law.
     """
+    if isinstance(design, TreeDesign):
+        return limb_masses(design)
     return _LAWS.of(design)(design)
 
 

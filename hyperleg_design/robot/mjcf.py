@@ -190,13 +190,13 @@ def _add_drives(spec: mujoco.MjSpec, design: RobotDesign) -> None:
             for row, joint in enumerate(joints):
                 if matrix[row, column]:
                     tendon.wrap_joint(prefixed(side, joint), matrix[row, column])
-            peak = constants.peak_torque[column]
+            limit = constants.standstill_torque[column]
             spec.add_actuator(
                 name=prefixed(side, motor),
                 target=prefixed(side, motor),
                 trntype=mujoco.mjtTrn.mjTRN_TENDON,
                 ctrllimited=True,
-                ctrlrange=[-peak, peak],
+                ctrlrange=[-limit, limit],
             )
 
 

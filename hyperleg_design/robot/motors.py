@@ -48,6 +48,13 @@ class MotorArrays:
     mass: np.ndarray
     """Mass of the bare motor [kg]."""
 
+    @property
+    def standstill_torque(self) -> np.ndarray:
+        """Largest torque at standstill [Nm], `(..., motors)`: the peak torque, or the stall torque
+        where the design's bus voltage allows no more.
+        """
+        return np.minimum(self.peak_torque, self.stall_torque)
+
 
 @cache
 def _catalogue_at(folder: Path) -> dict[str, Motor]:

@@ -150,17 +150,24 @@ def joint_from_motor(design: RobotDesign, posture: str | None = None) -> np.ndar
     """M over the joints that move and the motors that are there, `(..., joints, motors)` [-].
 
     A locked toe whose motor stays gives a 6 x 7 matrix: that motor still helps knee and ankle. A
-    design that writes its tree out has one posture, its default, whatever is asked for.
+    design that writes its tree out has one posture, its default, which all names mean.
 
     Args:
         design: a robot, or a batch of `n` robots.
-        posture: `standing` or `walking`, the paper's two; the design's own by default.
+        posture: `standing` or `walking`, the paper's two, or `default` of a design that writes its
+            tree out; the design's own by default.
 
     Returns:
         M with tau_joint = M tau_motor and motor_velocity = M^T joint_velocity; power is the
         same on both sides.
+
+    Raises:
+        InputError: no such posture.
     """
     if isinstance(design, TreeDesign):
+        if posture not in (None, "default", *POSTURES):
+            remedy = f"expects default, which is all that {design.name} has; or leave it out"
+            raise InputError("posture", "", posture, remedy)
         return limb_actuation.joint_from_motor(design)
     return full_joint_from_motor(cast("HyperLeg", design), posture)[
         ..., : len(joint_names(design)), : len(motor_names(design))
@@ -254,7 +261,7 @@ def reflected_inertia(matrix: np.ndarray, rotor_inertia: np.ndarray) -> np.ndarr
 
 
 def derate(design: RobotDesign) -> np.ndarray:
-    """Collect the fraction of the summed peak torque that is counted on at each joint that moves.
+    """Collect the fraction of the motors' torques that is counted on at each joint that moves.
 
     Args:
         design: a robot or batch.
@@ -272,7 +279,8 @@ def derate(design: RobotDesign) -> np.ndarray:
 
 def max_joint_torque(design: RobotDesign, posture: str = "standing") -> np.ndarray:
     """Largest torque of each joint alone, derated as in Table I, `(..., joints)` [Nm]: derate * sum
-    |M| tau_peak.
+    |M| tau, with tau of each motor at standstill, its peak torque or its stall torque if that is
+    smaller.
 
     Args:
         design: a robot, or a batch of `n` robots.
@@ -281,8 +289,8 @@ def max_joint_torque(design: RobotDesign, posture: str = "standing") -> np.ndarr
     Returns:
         Torques, each reached only while every motor of the joint pulls for it [Nm].
     """
-    peak = motor_arrays(design).peak_torque[..., : len(motor_names(design))]
-    return derate(design) * joint_torque(np.abs(joint_from_motor(design, posture)), peak)
+    limit = motor_arrays(design).standstill_torque[..., : len(motor_names(design))]
+    return derate(design) * joint_torque(np.abs(joint_from_motor(design, posture)), limit)
 
 
 def single_joint_speed(design: RobotDesign, posture: str = "walking") -> np.ndarray:

@@ -63,12 +63,8 @@ def analyze(design: RobotDesign) -> dict[str, Any]:
     matrix = {posture: transmission.joint_from_motor(design, posture) for posture in POSTURES}
     envelope = motor_envelope(design)
     below = matrix["walking"][BELOW_HIP, BELOW_HIP]
-    peak = envelope.peak_torque[BELOW_HIP]
-    full_peak = envelope.peak_torque
-    alone = [
-        float(zonotope.alone(matrix["walking"], -full_peak, full_peak, i))
-        for i in range(len(joints))
-    ]
+    limit = envelope.standstill_torque
+    alone = [float(zonotope.alone(matrix["walking"], -limit, limit, i)) for i in range(len(joints))]
     return {
         "schema": SCHEMA,
         "design": design.name,
@@ -89,7 +85,9 @@ def analyze(design: RobotDesign) -> dict[str, Any]:
         "torque_alone": _named(joints, np.array(alone)),
         "joint_limits": _joint_limits(design, joints, matrix["walking"], np.array(alone)),
         "reflected_inertia": leg_reflected_inertia(design).tolist(),
-        "zonotope_to_box_volume": float(zonotope.zonotope_to_box_volume(below, -peak, peak)),
+        "zonotope_to_box_volume": float(
+            zonotope.zonotope_to_box_volume(below, -limit[BELOW_HIP], limit[BELOW_HIP])
+        ),
         "ablation_confound": ablation.confound(design) if design.variant == "toe" else None,
     }
 
@@ -97,13 +95,17 @@ def analyze(design: RobotDesign) -> dict[str, Any]:
 def _joint_limits(
     design: Design, joints: tuple[str, ...], matrix: np.ndarray, alone: np.ndarray
 ) -> dict[str, Any]:
-    """What each joint can do under one convention: walking posture, motors at their peak torque
-    and standstill, nothing derated.
+    """What each joint can do under one convention: walking posture, motors at standstill with
+    their largest torque, nothing derated.
     """
-    peak = motor_envelope(design).peak_torque
+    envelope = motor_envelope(design)
+    limit = envelope.standstill_torque
+    motors = "at peak torque"
+    if np.any(limit < envelope.peak_torque):
+        motors = "at peak torque or at the stall torque where that is smaller"
     return {
-        "convention": "walking, at standstill, motors at peak torque, not derated",
-        "max_torque": _named(joints, transmission.joint_torque(np.abs(matrix), peak)),
+        "convention": f"walking, at standstill, motors {motors}, not derated",
+        "max_torque": _named(joints, transmission.joint_torque(np.abs(matrix), limit)),
         "torque_alone": _named(joints, alone),
         "speed": _named(joints, transmission.single_joint_speed(design, "walking")),
         "reflected_inertia": _named(joints, np.diag(leg_reflected_inertia(design, "walking"))),
@@ -116,8 +118,10 @@ def _named(joints: tuple[str, ...], values: np.ndarray) -> dict[str, float]:
 
 def _motors(design: Design) -> dict[str, Any]:
     kind = str(design.electrical.constants)
+    corner = motor_envelope(design).corner_speed
     motors = {}
-    for name, actuator in zip(transmission.motor_names(design), ACTUATOR_OF_MOTOR, strict=False):
+    names = zip(transmission.motor_names(design), ACTUATOR_OF_MOTOR, strict=False)
+    for column, (name, actuator) in enumerate(names):
         motor = find_motor(str(getattr(design.actuators, actuator).motor))
         motors[name] = {
             "motor": motor.name,
@@ -126,7 +130,7 @@ def _motors(design: Design) -> dict[str, Any]:
             "peak_torque": motor.peak_torque(kind),
             "rated_torque": motor.rated_torque,
             "stall_torque": motor.stall_torque(kind) * design.electrical.voltage_ratio,
-            "corner_speed": motor.corner_speed(kind),
+            "corner_speed": float(corner[column]),
             "power_constant": motor.power_constant(kind),
             "motor_constant": motor.motor_constant(kind),
             "rotor_inertia": motor.rotor_inertia,

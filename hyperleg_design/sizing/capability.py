@@ -31,6 +31,7 @@ from hyperleg_design.robot.transmission import (
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_limb import skew
 from hyperleg_design.sizing.contacts import TIP, contact_kinematics, contact_points, sole_pads
+from hyperleg_design.sizing.derating import DeratedTorques, derated_torques
 from hyperleg_design.sizing.envelope import motor_envelope, torque_limits
 from hyperleg_design.sizing.kinematics import (
     about_y,
@@ -90,6 +91,8 @@ class ContactForce:
     """Joint torques of the pushing leg [Nm], `(joints,)`."""
     binding: tuple[str, ...]
     """Motors at a limit of their envelope."""
+    derated: tuple[str, ...]
+    """Joints at their derated torque, where derating is asked for."""
     slipping: tuple[str, ...]
     """Pads at the limit of friction."""
     body_weights: float
@@ -155,6 +158,7 @@ def largest_force(
     joint_velocity: np.ndarray | None = None,
     upright: bool = False,
     vertical: float | None = None,
+    derated: bool = False,
     model: RigidBodyModel | None = None,
 ) -> ContactForce:
     """Compute the largest contact force of one leg in a posture.
@@ -171,6 +175,7 @@ def largest_force(
             it.
         vertical: vertical force to hold at the same time [N], for the forward direction; free by
             default.
+        derated: whether joints give no more than the `derate` of the design counts on.
         model: the design's rigid-body model, to save making it.
 
     Returns:
@@ -183,7 +188,7 @@ def largest_force(
     """
     _check_question(design, direction, side, vertical)
     model = model or rigid_body_model(design)
-    push = _push(design, model, q, direction, side, joint_velocity)
+    push = _push(design, model, q, direction, side, joint_velocity, derated)
     pad_force, torque = _extreme(push, upright, vertical)
     return _contact_force(push, pad_force, torque)
 
@@ -225,6 +230,8 @@ class _Push:
     """Least motor torques [Nm], `(motors,)`."""
     upper: np.ndarray
     """Largest motor torques [Nm], `(motors,)`."""
+    derated: DeratedTorques | None
+    """Torques of joints that the design counts on, where derating is asked for."""
 
     @property
     def weight(self) -> float:
@@ -244,6 +251,7 @@ def _push(
     direction: str,
     side: str,
     joint_velocity: np.ndarray | None,
+    derated: bool,
 ) -> _Push:
     q = np.asarray(posture(design, q, model) if isinstance(q, str) else q, float)
     joints = len(joint_names(design))
@@ -276,6 +284,7 @@ def _push(
         gravity=model.inverse_dynamics(q, still, still)[columns],
         lower=lower,
         upper=upper,
+        derated=derated_torques(design, lower, upper) if derated else None,
     )
 
 
@@ -298,6 +307,9 @@ def _extreme(push: _Push, upright: bool, vertical: float | None) -> tuple[np.nda
         torque <= push.upper / peak,
         cp.SOC(push.friction * force[:, 2], force[:, :2].T, axis=0),
     ]
+    if (joints := push.derated) is not None and joints.names:
+        given = (matrix[joints.rows] * peak / scale) @ torque
+        constraints += [given >= joints.lower / scale, given <= joints.upper / scale]
     if upright:
         arms = push.points - push.model.center_of_mass(push.q)
         turning = np.hstack([skew(arm) for arm in arms])
@@ -338,6 +350,7 @@ def _contact_force(push: _Push, touching_force: np.ndarray, torque: np.ndarray) 
     near = np.minimum(push.upper - torque, torque - push.lower) / envelope.peak_torque
     sideways = np.linalg.norm(touching_force[:, :2], axis=1)
     slack = push.friction * touching_force[:, 2] - sideways
+    joint_torque = joint_from_motor(design) @ torque
     loaded = touching_force[:, 2] > 1e-3 * weight
     return ContactForce(
         design=design.name,
@@ -347,12 +360,13 @@ def _contact_force(push: _Push, touching_force: np.ndarray, torque: np.ndarray) 
         pad_force=pad_force,
         center_of_pressure=center[:2],
         motor_torque=torque,
-        joint_torque=joint_from_motor(design) @ torque,
+        joint_torque=joint_torque,
         binding=tuple(
             name
             for name, distance in zip(motor_names(design), near, strict=True)
             if distance < BINDING
         ),
+        derated=push.derated.reached(joint_torque, BINDING) if push.derated else (),
         slipping=tuple(
             pads[p].name
             for p, rest, bears in zip(push.touching, slack, loaded, strict=True)

@@ -24,6 +24,7 @@ from hyperleg_design.robot.transmission import (
     motor_names,
     motor_velocity,
 )
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.sizing.allocation import Allocation, least_heat
 from hyperleg_design.sizing.contacts import contact_kinematics
 from hyperleg_design.sizing.energy import EnergyLedger, EnergySums, cost_of_transport, energy_ledger
@@ -213,10 +214,14 @@ def demand(design: Design, motion: Motion | str, *, allow_excess: bool = True) -
         Torques and speeds of every motor over the motion, their margins, energies and heat.
 
     Raises:
-        InputError: a batch, a motion planned for another design, or no such motion.
+        InputError: a batch, a motion planned for another design, no such motion, or a design that
+            writes its tree out.
         InfeasibleError: the legs cannot do the motion, or `allow_excess` is off and the motors
             cannot.
     """
+    if isinstance(design, TreeDesign):
+        remedy = "has no planned motions, which need HyperLeg's legs; analyze gives its limits"
+        raise InputError(design.name, "family", design.family, remedy)
     if isinstance(motion, str):
         motion = reference_motion(design, motion)
     planned = motion.model.design

@@ -35,13 +35,19 @@ class MotorEnvelope:
     stall_torque: np.ndarray
     """Where the voltage line meets zero speed, w0 / Cp [Nm]."""
     peak_torque: np.ndarray
-    """Largest torque at any speed [Nm]."""
+    """Largest torque at any speed [Nm]; a motor whose stall torque is smaller reaches it only where
+    it brakes."""
     power_constant: np.ndarray
     """Joule heat over squared torque, Cp [W/Nm^2]."""
     efficiency_out: Any
     """Efficiency of the driver from battery to motor [-], `()` or the batch."""
     efficiency_regen: Any
     """Efficiency of the driver from motor to battery [-], `()` or the batch."""
+
+    @property
+    def standstill_torque(self) -> np.ndarray:
+        """Largest torque at standstill [Nm], `(..., motors)`: peak or stall torque, the smaller."""
+        return torque_limits(self, 0.0)[1]
 
     @property
     def corner_speed(self) -> np.ndarray:

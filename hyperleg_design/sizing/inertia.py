@@ -13,11 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.robot.checks.consistency import leg_length
 from hyperleg_design.robot.mass.bodies import Inertial
 from hyperleg_design.robot.mass.inertials import LEG_LINKS, inertials
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.names import JOINTS
+from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -90,8 +92,15 @@ def leg_inertia(design: Design) -> LegInertia:
         Masses [kg], lengths [m] and the swing inertia [kg m^2], rotors not included.
 
     Raises:
-        InputError: as `robot.mass.inertials.inertials`.
+        InputError: as `robot.mass.inertials.inertials`, or a design that writes its tree out, which
+            names no hip or knee.
     """
+    if isinstance(design, TreeDesign):
+        remedy = (
+            'has no straight leg of its own; analyze(design)["link_inertia"] gives the inertia '
+            "behind each joint, mass_table(design) the masses"
+        )
+        raise InputError(design.name, "family", design.family, remedy)
     links = inertials(design)
     leg_mass = sum(np.asarray(links[name].mass) for name in LEG_LINKS)
     swing_mass, com, inertia = composite(design, links, SWINGING)

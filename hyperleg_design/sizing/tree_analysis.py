@@ -10,6 +10,7 @@ import numpy as np
 
 from hyperleg_design.errors import InfeasibleError, InputError
 from hyperleg_design.robot import transmission
+from hyperleg_design.robot.checks.check_pads import hanging_pads
 from hyperleg_design.robot.kinematics.dimensions import limb_mass, standing_height, total_mass
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.motors import find_motor
@@ -33,16 +34,18 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
 
     Returns:
         Plain numbers, lists and mappings, SI units, ready for JSON: `limbs` (names of the copies,
-        none where the robot is described as a whole),
-        `total_mass`, `limb_mass` [kg], `standing_height` [m], `link_mass` [kg], `reduction` (joints
-        x motors), `max_joint_torque` [Nm] (derated), `torque_alone` [Nm] (the others at zero, not
+        none where the robot is described as a whole), `total_mass`, `limb_mass` [kg] (of the links
+        that move against the root), `standing_height` [m], `link_mass` [kg], `reduction` (joints x
+        motors), `max_joint_torque` [Nm] (derated), `torque_alone` [Nm] (the others at zero, not
         derated), `single_joint_speed` [rad/s], `reflected_inertia` [kg m^2] (joints x joints),
         `link_inertia` [kg m^2] (of what is behind each joint, about it, rotors not in it),
         `zonotope_to_box_volume` [-], `motors`, `linkages` (for each motor with a rod `reduction`,
         its smallest and largest by joint, `default` and `beyond`, as `RodRange` has them), and
         `contact_force` by direction: `force` [N] (the largest component of one limb's force on the
-        floor that way; the other components are whatever they must be),
-        `body_weights` [-] and `binding` motors, or the `reason` why there is none.
+        floor that way; the other components are whatever they must be), `body_weights` [-],
+        `binding` motors and joints at their `derated` torque, or the `reason` why there is none;
+        `hanging_pads` (heights [m] above the lowest pad of pads in the air, by name; the forces are
+        those of the lowest pads of the limb).
 
     Raises:
         InputError: a batch of designs.
@@ -50,7 +53,7 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
     if design.batch_shape:
         raise InputError(design.name, "", None, "holds a batch of designs; take one of them")
     joints, matrix = transmission.joint_names(design), transmission.joint_from_motor(design)
-    peak = motor_envelope(design).peak_torque
+    limit = motor_envelope(design).standstill_torque
     default = tree_limb.default_position(design)
     unknown = design.trunk.motion == "floating" and not design.pad_sections
 
@@ -73,12 +76,12 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
         "reduction": matrix.tolist(),
         "max_joint_torque": named(transmission.max_joint_torque(design)),
         "torque_alone": named(
-            [zonotope.alone(matrix, -peak, peak, row) for row in range(len(joints))]
+            [zonotope.alone(matrix, -limit, limit, row) for row in range(len(joints))]
         ),
         "single_joint_speed": named(transmission.single_joint_speed(design)),
         "reflected_inertia": leg_reflected_inertia(design).tolist(),
         "link_inertia": named([limb_masses.behind(design, name, default)[2] for name in joints]),
-        "zonotope_to_box_volume": float(zonotope.zonotope_to_box_volume(matrix, -peak, peak)),
+        "zonotope_to_box_volume": float(zonotope.zonotope_to_box_volume(matrix, -limit, limit)),
         "linkages": {
             rod.motor: {
                 "reduction": {joint: list(ends) for joint, ends in rod.reduction.items()},
@@ -88,18 +91,20 @@ def analyze_tree(design: TreeDesign) -> dict[str, Any]:
             for rod in rod_ranges(design)
         },
         "contact_force": _forces(design),
+        "hanging_pads": hanging_pads(design),
     }
 
 
 def _forces(design: TreeDesign) -> dict[str, Any]:
-    """Largest contact forces of the first limb in the default posture, by direction."""
+    """Largest contact forces of the first limb in the default posture, derated, by direction."""
     forces: dict[str, Any] = {}
     for direction in DIRECTIONS:
         if not design.pad_sections:
             forces[direction] = {"force": None, "reason": NO_PADS}
             continue
         try:
-            force = largest_force(design, "default", direction, side=design.copies[0])
+            side = design.copies[0]
+            force = largest_force(design, "default", direction, side=side, derated=True)
         except InfeasibleError as error:
             forces[direction] = {"force": None, "reason": str(error)}
             continue
@@ -107,6 +112,7 @@ def _forces(design: TreeDesign) -> dict[str, Any]:
             "force": float(force.force @ DIRECTIONS[direction]),
             "body_weights": force.body_weights,
             "binding": list(force.binding),
+            "derated": list(force.derated),
         }
     return forces
 

@@ -6,8 +6,9 @@ import pytest
 
 from hyperleg_design.report.tree_text import MOST_LINKS, tree_analysis_text
 from hyperleg_design.robot.load import load_robot
+from hyperleg_design.robot.mass.mass_rows import mass_rows
 from hyperleg_design.sizing.analysis import analyze
-from tests.robot.tree_files import leg, leg_file
+from tests.robot.tree_files import bolted_file, leg, leg_file
 
 
 def test_a_robot_with_limbs_speaks_of_one_limb_and_gives_reductions_of_its_rods():
@@ -22,6 +23,17 @@ def test_a_robot_that_is_described_as_a_whole_has_no_limbs():
     assert text.startswith("leg (described as a whole): 3.00 kg, all but the trunk 2.00 kg")
     assert "limb" not in text
     assert "rod" not in text
+
+
+def test_all_but_the_trunk_is_all_that_moves_against_an_empty_root():
+    design = leg(**bolted_file())
+    analysis = analyze(design)
+    assert analysis["limb_mass"] == pytest.approx(2.0)
+    assert "7.10 kg, all but the trunk 2.00 kg" in tree_analysis_text(analysis)
+    (row,) = (row for row in mass_rows(design) if row.kind == "limb")
+    assert row.mass == pytest.approx(2.0)
+    links = [row for row in mass_rows(design) if row.kind == "link"]
+    assert sum(row.count * row.mass for row in links) == pytest.approx(7.100001)
 
 
 def test_without_pads_the_reason_stands_once():

@@ -11,6 +11,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.linkage import FourBar, LinkageModel
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.names import JOINTS
 
 
@@ -162,3 +163,8 @@ def test_what_no_such_linkage_can_be(hyperleg):
         LinkageModel.of(hyperleg.with_values({"transmission.walking.ankle_pitch": 500.0}))
     with pytest.raises(InputError, match=r"walking_toe_deg = 30"):  # outside the toe's range
         LinkageModel.of(hyperleg.with_values({"transmission.linkage.walking_toe_deg": 30.0}))
+
+
+def test_a_tree_has_no_such_linkage():
+    with pytest.raises(InputError, match=r"mini_cheetah.*family.*joint_from_motor"):
+        LinkageModel.of(load_robot("mini_cheetah"))

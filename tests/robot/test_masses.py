@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import masses
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.masses import actuator_mass, mass_law, mass_table
+from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.motors import catalogue, find_motor
 
 
@@ -139,3 +141,12 @@ def test_segments_weigh_more_than_what_they_house(hyperleg):
         hyperleg.with_values({"thigh.mass": 2.9})
     with pytest.raises(InputError, match=r"pelvis\.mass = 15\.46.*gear_mass_per_torque"):
         hyperleg.with_values({"masses.gear_mass_per_torque": 0.05})
+
+
+def test_a_tree_has_masses_by_link():
+    design = load_robot("mini_cheetah")
+    table = mass_table(design)
+    assert list(table.links) == list(design.link_sections)
+    weighed = sum(float(body.mass) for name, body in table.links.items() if name != "trunk")
+    assert table.limb == pytest.approx(weighed)
+    assert table.total == pytest.approx(rigid_body_model(design).tree.mass)

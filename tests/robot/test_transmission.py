@@ -10,6 +10,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.ablation import ablate, variants
 from hyperleg_design.robot.motors import motor_arrays
+from tests.robot.tree_files import leg
 
 WALKING = np.zeros((7, 7))
 WALKING[range(3), range(3)] = 25.0
@@ -42,9 +43,29 @@ def test_the_designs_own_posture_is_the_default(hyperleg):
         transmission.joint_from_motor(hyperleg, "running")
 
 
+def test_a_tree_has_one_posture_and_refuses_names_of_others():
+    design = leg()
+    for posture in ("default", "walking", "standing"):
+        np.testing.assert_array_equal(
+            transmission.joint_from_motor(design, posture), [[7.0, 0.0], [0.0, 9.0]]
+        )
+    for function in (transmission.joint_from_motor, transmission.max_joint_torque):
+        with pytest.raises(InputError, match=r"posture.*garbage.*default"):
+            function(design, "garbage")
+
+
 def test_the_maxima_of_table_one(hyperleg):
     printed = [126.0, 126.0, 126.0, 212.0, 111.7, 48.4, 46.8]
     np.testing.assert_allclose(transmission.max_joint_torque(hyperleg), printed, rtol=1e-3)
+
+
+def test_at_half_the_voltage_a_motor_gives_its_stall_torque_where_that_is_below_its_peak():
+    motors = {"actuators.hip.motor": "MF0076008", "actuators.hip.gear": 20}
+    design = leg().with_values({**motors, "electrical.voltage_ratio": 0.5})
+    hip, knee = transmission.max_joint_torque(design)
+    # w0 Kt^2 / R at half the speed, and the peak of the RI60, whose stall torque stays above it
+    assert hip == pytest.approx(20 * 0.5 * (4249 * 2 * np.pi / 60) * 0.1**2 / 0.92)
+    assert knee == pytest.approx(9 * 1.63)
 
 
 def test_single_joint_speeds(hyperleg):

@@ -34,6 +34,18 @@ def leg_file(**sections: Any) -> dict[str, Any]:
     return copy.deepcopy(_LEG) | sections
 
 
+def bolted_file() -> dict[str, Any]:
+    """A leg whose trunk of 5 kg is fixed to an empty root, and carries a camera of 0.1 kg."""
+    whole = leg_file()
+    empty, zero = {"mass": 1e-6, "gyration": [0.01] * 3}, {"type": "fixed"}
+    links = {"root": empty, **whole["links"], "camera": {"mass": 0.1, "gyration": [0.02] * 3}}
+    links["base"]["mass"] = 5.0
+    joints = {"bolt": {"parent": "root", "child": "base", **zero}, **whole["joints"]}
+    joints["mount"] = {"parent": "base", "child": "camera", **zero}
+    trunk = {"link": "root", "motion": "floating"}
+    return whole | {"trunk": trunk, "links": links, "joints": joints}
+
+
 def leg(**sections: Any) -> TreeDesign:
     """A leg of two joints on a stand."""
     return tree_design_from_mapping(leg_file(**sections), "leg", "leg.yaml")

@@ -78,3 +78,17 @@ def test_variants_lose_the_toe_and_say_so(name):
 def test_a_batch_is_refused():
     with pytest.raises(InputError, match="batch"):
         analyze(load_design("hyperleg").with_values({"toe.mass": np.array([0.1, 0.2])}))
+
+
+def test_at_half_the_voltage_the_ankle_is_limited_by_its_stall_torque():
+    low = analyze(load_design("hyperleg", overrides={"electrical.voltage_ratio": 0.5}))
+    motor = low["motors"]["ankle_left"]
+    assert motor["stall_torque"] == pytest.approx(0.5 * 2.938, rel=1e-3)
+    assert motor["corner_speed"] == 0.0
+    assert low["joint_limits"]["max_torque"]["ankle_roll"] == pytest.approx(
+        2 * 16.51 * motor["stall_torque"]
+    )
+    assert low["torque_alone"]["ankle_roll"] <= 2 * 16.51 * motor["stall_torque"] + 1e-9
+    assert "stall torque" in low["joint_limits"]["convention"]
+    hip = low["motors"]["hip_pitch"]
+    assert hip["corner_speed"] == pytest.approx(150 * (1 - 5.04 / (0.5 * 84.7458)), rel=1e-4)

@@ -6,6 +6,7 @@ import pytest
 from hyperleg_design.errors import InfeasibleError, InputError
 from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.models import GRAVITY
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.robot.transmission import joint_from_motor, joint_names, motor_names
@@ -171,3 +172,8 @@ def test_motion_of_another_design_is_refused():
         demand(design, reference_motion(ablate(design, "toe_removed"), "squat"))
     with pytest.raises(InputError, match="motor or battery"):
         walked("toe").cost_of_transport("wall")
+
+
+def test_a_tree_has_no_planned_motion():
+    with pytest.raises(InputError, match=r"mini_cheetah.*family.*HyperLeg's legs"):
+        demand(load_robot("mini_cheetah"), "walk")

@@ -4,6 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.motors import motor_arrays
 from hyperleg_design.sizing.envelope import (
     clip_torque,
     motor_envelope,
@@ -114,3 +115,15 @@ def test_only_installed_motors_count():
     removed = motor_envelope(load_design("hyperleg", variant="toe_removed"))
     assert removed.peak_torque.shape == removed.select(slice(None)).stall_torque.shape == (6,)
     assert removed.select([3]).peak_torque.tolist() == [2.68]
+
+
+def test_at_standstill_a_motor_gives_the_smaller_of_peak_and_stall_torque():
+    low = load_design("hyperleg", overrides={"electrical.voltage_ratio": 0.5})
+    envelope = motor_envelope(low)
+    lower, upper = torque_limits(envelope, 0.0)
+    np.testing.assert_array_equal(envelope.standstill_torque, upper)
+    np.testing.assert_array_equal(motor_arrays(low).standstill_torque, upper)
+    np.testing.assert_array_equal(-lower, upper)
+    np.testing.assert_allclose(upper[3:5], [2.68, 0.5 * 2.938], rtol=1e-3)  # peak, stall
+    ankle = envelope.select([4])
+    assert torque_limits(ankle, -0.3 * ankle.no_load_speed)[1] == ankle.peak_torque  # it brakes

@@ -3,7 +3,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hyperleg_design.errors import InputError
 from hyperleg_design.robot.design import load_design
+from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.sizing.inertia import (
@@ -120,3 +122,8 @@ def test_measures_without_dimension_do_not_know_the_scale_of_mass():
     ):
         assert getattr(heavier, name) == pytest.approx(getattr(leg, name))
     assert heavier.swing_inertia == pytest.approx(1.5 * leg.swing_inertia)
+
+
+def test_a_tree_is_refused_with_what_to_use_instead():
+    with pytest.raises(InputError, match=r"mini_cheetah.*family.*link_inertia.*mass_table"):
+        leg_inertia(load_robot("mini_cheetah"))

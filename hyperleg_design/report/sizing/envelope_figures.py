@@ -126,7 +126,7 @@ def _envelope(
     """Regions of one motor's envelope, with torque and speed stretched to the panel's."""
     free, peak = float(single.no_load_speed[0]), float(single.peak_torque[0])
     end = min(1.25 * free, float(single.top_speed[0]))
-    corner = float(single.corner_speed[0])
+    corner, at_corner = float(single.corner_speed[0]), float(single.standstill_torque[0])
     speed = np.unique(
         np.concatenate([np.linspace(-end, end, 401), [-corner, corner, -free, 0, free]])
     )
@@ -156,15 +156,15 @@ def _envelope(
     note: dict[str, Any] = {"fontsize": 8, "color": INK, "textcoords": "offset points"}
     axis.plot(
         [corner * speed_scale, free * speed_scale],
-        [peak * torque_scale, 0],
+        [at_corner * torque_scale, 0],
         "o",
         color=INK,
         markersize=3.5,
         zorder=5,
     )
     axis.annotate(
-        f"{corner * speed_scale:.3g} rad/s, {peak * torque_scale:.3g} Nm",
-        (corner * speed_scale, peak * torque_scale),
+        f"{corner * speed_scale:.3g} rad/s, {at_corner * torque_scale:.3g} Nm",
+        (corner * speed_scale, at_corner * torque_scale),
         xytext=(4, 5),
         **note,
     )

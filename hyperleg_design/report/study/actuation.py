@@ -85,14 +85,14 @@ def envelopes(context: Context) -> Made:
     walk = demand(design, "walk")
     torque = walk.joint_torque.reshape(-1, walk.joint_torque.shape[-1])
     velocity = walk.motion.v[:, 6:].reshape(torque.shape)
-    matrix, peak = (
+    matrix, limit = (
         transmission.joint_from_motor(design, "walking"),
-        motor_envelope(design).peak_torque,
+        motor_envelope(design).standstill_torque,
     )
-    _, high = zonotope.box(matrix, -peak, peak)
+    _, high = zonotope.box(matrix, -limit, limit)
     rows: list[list[Any]] = []
     for index, joint in enumerate(transmission.joint_names(design)):
-        alone = float(zonotope.alone(matrix, -peak, peak, index))
+        alone = float(zonotope.alone(matrix, -limit, limit, index))
         rows.append(
             [
                 joint.replace("_", " "),
@@ -101,8 +101,8 @@ def envelopes(context: Context) -> Made:
                 f"{100 * alone / high[index]:.0f} %",
             ]
         )
-    share = float(zonotope.zonotope_to_box_volume(matrix[3:, 3:], -peak[3:], peak[3:]))
-    pitch = float(zonotope.alone(matrix[3:, 3:], -peak[3:], peak[3:], 1, held=[0]))
+    share = float(zonotope.zonotope_to_box_volume(matrix[3:, 3:], -limit[3:], limit[3:]))
+    pitch = float(zonotope.alone(matrix[3:, 3:], -limit[3:], limit[3:], 1, held=[0]))
     content = [
         "Each motor lives inside four quadrants: peak torque, and the line from stall torque to no-load speed. Projected through M, the ankle's two motors make the pitch and roll envelopes of the paper's Fig. 4.",
         context.picture(

@@ -161,10 +161,11 @@ def slice_chart(
         if not set(pair) <= set(joints):
             continue
         rows = joints.index(pair[0]), joints.index(pair[1])
-        matrix, peak = transmission.joint_from_motor(design), motor_envelope(design).peak_torque
+        matrix = transmission.joint_from_motor(design)
+        limit = motor_envelope(design).standstill_torque
         for name, corners, look in (
-            ("others at zero", slices.slice_polygon(matrix, -peak, peak, rows), "solid"),
-            ("others free", slices.projection_polygon(matrix, -peak, peak, rows), "dot"),
+            ("others at zero", slices.slice_polygon(matrix, -limit, limit, rows), "solid"),
+            ("others free", slices.projection_polygon(matrix, -limit, limit, rows), "dot"),
         ):
             closed = np.concatenate([corners, corners[:1]]).round(3)
             figure.add_scatter(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, cast
 
 from hyperleg_design.robot.masses import mass_table
 from hyperleg_design.robot.names import SEGMENTS
@@ -12,6 +12,7 @@ from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 if TYPE_CHECKING:
     from hyperleg_design.robot.parameters.described import RobotDesign
+    from hyperleg_design.robot.parameters.hyperleg import HyperLeg
 
 
 def masses_text(designs: Mapping[str, RobotDesign]) -> str:
@@ -38,6 +39,6 @@ def _masses(design: RobotDesign) -> dict[str, float]:
         table = limb_masses.limb_masses(design)
         links = {name.replace("_", " "): float(body.mass) for name, body in table.links.items()}
         return links | {"one limb": float(table.limb), "**robot**": float(table.total)}
-    own: Any = mass_table(design)  # type: ignore[arg-type]
+    own = mass_table(cast("HyperLeg", design))
     parts = {name: float(getattr(own, name)) for name in SEGMENTS}
     return parts | {"one leg": float(own.leg), "**robot**": float(own.total)}

@@ -31,7 +31,8 @@ def total_mass(design: RobotDesign) -> Any:
 
 
 def limb_mass(design: RobotDesign) -> Any:
-    """Compute the mass of one limb: of one leg, or of all but the root link.
+    """Compute the mass of one limb: of one leg, or of the links that move against the root
+    link.
 
     Args:
         design: a robot or batch, of any family.

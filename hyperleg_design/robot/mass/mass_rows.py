@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hyperleg_design.robot.kinematics.kinematic_tree import Link, mass_of
+from hyperleg_design.robot.kinematics.kinematic_tree import Link, Tree, mass_of
 from hyperleg_design.robot.kinematics.posture import Pose, link_poses
 from hyperleg_design.robot.kinematics.tree import build_tree
 from hyperleg_design.robot.trees.tree_design import TreeDesign
@@ -60,29 +60,40 @@ def mass_rows(design: RobotDesign) -> list[MassRow]:
     poses = link_poses(tree)
     first, copies = design.copies[0], len(design.copies)
     start = f"{first}_" if first else ""
-    limb = [link for link in tree.links if link.name != tree.base and link.name.startswith(start)]
+    links = [link for link in tree.links if link.name != tree.base and link.name.startswith(start)]
+    bolted = _bolted(tree)
+    limb = [link for link in links if link.name not in bolted]
 
-    def row(kind: str, name: str, count: int, links: Iterable[Link], origin: np.ndarray) -> MassRow:
-        return MassRow(kind, name, count, *_together([(k, poses[k.name]) for k in links], origin))
+    def row(kind: str, name: str, count: int, parts: Iterable[Link], origin: np.ndarray) -> MassRow:
+        return MassRow(kind, name, count, *_together([(k, poses[k.name]) for k in parts], origin))
 
     rows = [
         row(
             "segment",
             name,
             1 if name == "pelvis" else 2,
-            [tree.link(n) for n in links],
-            poses[links[0]][1],
+            [tree.link(n) for n in names],
+            poses[names[0]][1],
         )
-        for name, links in ({} if isinstance(design, TreeDesign) else SEGMENT_LINKS).items()
+        for name, names in ({} if isinstance(design, TreeDesign) else SEGMENT_LINKS).items()
     ]
     kind = "limb" if isinstance(design, TreeDesign) else "leg"
     rows.append(row(kind, kind, copies, limb, np.zeros(3)))
     rows.append(row("robot", "robot", 1, tree.links, np.zeros(3)))
-    for link in [tree.link(tree.base), *limb]:
+    for link in [tree.link(tree.base), *links]:
         count = 1 if link.name == tree.base else copies
         name = link.name if link.name == tree.base else link.name.removeprefix(start)
         rows.append(row("link", name, count, [link], poses[link.name][1]))
     return rows
+
+
+def _bolted(tree: Tree) -> set[str]:
+    """Names of the base and of the links that fixed joints bolt to it."""
+    names = {tree.base}
+    for joint in tree.joints:
+        if joint.fixed and joint.parent in names:
+            names.add(joint.child)
+    return names
 
 
 def _together(

@@ -12,7 +12,7 @@ from hyperleg_design.errors import InputError
 from hyperleg_design.robot.mass.actuator import actuator_mass
 from hyperleg_design.robot.mass.bodies import Inertial, shifted
 from hyperleg_design.robot.trees.tree_design import TreeDesign
-from hyperleg_design.robot.trees.tree_limb import copied, descendants, link_frames
+from hyperleg_design.robot.trees.tree_limb import copied, descendants, link_frames, trunk_links
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,9 +20,9 @@ class LimbMasses:
     """Masses of a robot with its tree written out [kg], each `(...)`."""
 
     trunk: Any
-    """Mass of the root link [kg]."""
+    """Mass of the root link and of all that is fixed to it, of every limb [kg]."""
     limb: Any
-    """Mass of one limb, which is all but the root link [kg]."""
+    """Mass of one limb: of the links that move against the root link [kg]."""
     total: Any
     links: Mapping[str, Inertial]
     """Inertials of the root link and of one unmirrored limb, in their own frames."""
@@ -71,9 +71,18 @@ def limb_masses(design: TreeDesign) -> LimbMasses:
                     f"is less than the reference actuator {name} that leaves it",
                     bad=~heavy,
                 )
-    limb = sum((np.asarray(v.mass) for n, v in links.items() if n != root), start=np.zeros(()))
-    trunk = np.asarray(links[root].mass)
-    return LimbMasses(trunk, limb, trunk + len(design.copies) * limb, links)
+    bolted = trunk_links(design)
+    copied_links = [name for name in links if name != root]
+    fixed = _sum(links, [name for name in copied_links if name in bolted])
+    limb = _sum(links, [name for name in copied_links if name not in bolted])
+    own, copies = np.asarray(links[root].mass), len(design.copies)
+    total = own + copies * _sum(links, copied_links)
+    return LimbMasses(own + copies * fixed, limb, total, links)
+
+
+def _sum(links: Mapping[str, Inertial], names: list[str]) -> Any:
+    """Mass of some links together [kg]."""
+    return sum((np.asarray(links[name].mass) for name in names), start=np.zeros(()))
 
 
 def with_point(body: Inertial, mass: Any, place: np.ndarray) -> Inertial:

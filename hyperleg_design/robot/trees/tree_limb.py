@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.robot.parameters.described import prefixed
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 Frame = tuple[np.ndarray, np.ndarray]
@@ -144,6 +145,22 @@ def descendants(design: TreeDesign, joint: str) -> list[str]:
     ]
 
 
+def trunk_links(design: TreeDesign) -> tuple[str, ...]:
+    """List the links of the trunk: the root link, and all that fixed joints bolt to it.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Names of the links, the root first.
+    """
+    links = [str(design.trunk.link)]
+    for joint in design.all_joints.values():
+        if joint.type == "fixed" and joint.parent in links:
+            links.append(str(joint.child))
+    return tuple(links)
+
+
 def copied(copy: Any, place: np.ndarray, *, move: bool = False) -> np.ndarray:
     """Transform a place of the limb to that of a copy of the limb.
 
@@ -178,6 +195,29 @@ def pad_points(design: TreeDesign, position: np.ndarray | None = None) -> np.nda
         drop = np.stack(np.broadcast_arrays(0.0, 0.0, radius), -1)
         points.append(centre - drop)
     return np.stack(np.broadcast_arrays(*points), -2) if points else np.zeros((0, 3))
+
+
+def pad_heights(design: TreeDesign) -> dict[str, np.ndarray]:
+    """Compute how far the pads of all limbs are above the lowest of them in the default posture.
+
+    Args:
+        design: a robot or batch.
+
+    Returns:
+        Heights of the lowest points of the pads [m], `(...)`, by name of the pad, after that of its
+        limb; without pads of the trunk.
+    """
+    points, trunk = pad_points(design, default_position(design)), trunk_links(design)
+    heights = {
+        prefixed(copy, name): points[..., row, 2] + np.asarray(section.position, float)[..., 2]
+        for copy, section in design.copy_sections.items()
+        for row, (name, pad) in enumerate(design.pad_sections.items())
+        if pad.link not in trunk
+    }
+    if not heights:
+        return {}
+    lowest = np.min(np.stack(np.broadcast_arrays(*heights.values())), 0)
+    return {name: height - lowest for name, height in heights.items()}
 
 
 def pad_radius(design: TreeDesign, pad: Any) -> Any:

@@ -72,8 +72,8 @@ class Batch:
         own tree, the whole limb.
 
         Returns:
-            Matrix M [-] and peak torques of the motors [Nm].
+            Matrix M [-] and largest torques of the motors at standstill [Nm].
         """
-        return self.walking[..., self.start :, self.start :], self.envelope.peak_torque[
+        return self.walking[..., self.start :, self.start :], self.envelope.standstill_torque[
             ..., self.start :
         ]

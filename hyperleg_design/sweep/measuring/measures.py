@@ -234,8 +234,8 @@ def torque_alone(batch: Batch) -> np.ndarray:
     """Largest torque of each joint while the others have none, walking, at standstill, not
     derated.
     """
-    matrix, peak = batch.walking, batch.envelope.peak_torque
-    return np.stack([zonotope.alone(matrix, -peak, peak, j) for j in range(matrix.shape[-2])], -1)
+    matrix, limit = batch.walking, batch.envelope.standstill_torque
+    return np.stack([zonotope.alone(matrix, -limit, limit, j) for j in range(matrix.shape[-2])], -1)
 
 
 @measure("Nm", "low", JOINTS, families=BOTH)
@@ -256,8 +256,8 @@ def zonotope_size(batch: Batch) -> np.ndarray:
     """Edge of the cube whose volume is that of the torques which the joints below the hip can have
     together, walking.
     """
-    matrix, peak = batch.below_hip()
-    return zonotope.volume(matrix, -peak, peak) ** (1.0 / matrix.shape[-2])
+    matrix, limit = batch.below_hip()
+    return zonotope.volume(matrix, -limit, limit) ** (1.0 / matrix.shape[-2])
 
 
 @measure("", "high", families=BOTH)
@@ -265,8 +265,8 @@ def zonotope_to_box_volume(batch: Batch) -> np.ndarray:
     """Share of the box of single-joint maxima that the joints below the hip can reach together,
     walking.
     """
-    matrix, peak = batch.below_hip()
-    return zonotope.zonotope_to_box_volume(matrix, -peak, peak)
+    matrix, limit = batch.below_hip()
+    return zonotope.zonotope_to_box_volume(matrix, -limit, limit)
 
 
 @measure("kg m^2", "low", JOINTS, families=BOTH)
@@ -292,7 +292,7 @@ def _holding_heat(batch: Batch, load: StaticLoad) -> np.ndarray:
 @measure("Nm", "high", JOINTS, usual=False, name="joint_limits.max_torque")
 def joint_limits_max_torque(batch: Batch) -> np.ndarray:
     """Largest torque of each joint whatever the others do, walking, at standstill, not derated."""
-    return transmission.joint_torque(np.abs(batch.walking), batch.envelope.peak_torque)
+    return transmission.joint_torque(np.abs(batch.walking), batch.envelope.standstill_torque)
 
 
 @measure("Nm", "high", JOINTS, usual=False, name="joint_limits.torque_alone")
@@ -337,13 +337,13 @@ def push_off_heat(batch: Batch) -> np.ndarray:
 
 @measure("", "low")
 def push_off_use(batch: Batch) -> np.ndarray:
-    """Largest motor torque over its peak in that push-off, at standstill; above 1 the motors cannot
-    hold it that way.
+    """Largest motor torque in that push-off over what the motor gives at standstill; above 1 the
+    motors cannot hold it that way.
     """
     tau = transmission.motor_torque(
         batch.walking, batch.push_off.torque, batch.envelope.power_constant
     )
-    return np.max(np.abs(tau) / batch.envelope.peak_torque, -1)
+    return np.max(np.abs(tau) / batch.envelope.standstill_torque, -1)
 
 
 @measure("W", "high")

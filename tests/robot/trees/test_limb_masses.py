@@ -8,7 +8,7 @@ import pytest
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.masses import actuator_mass
 from hyperleg_design.robot.trees import limb_masses
-from tests.robot.tree_files import leg
+from tests.robot.tree_files import bolted_file, leg
 
 
 def test_another_motor_changes_the_mass_of_the_link_that_houses_it():
@@ -31,3 +31,15 @@ def test_a_motor_in_the_trunk_counts_once_a_limb():
     assert change == pytest.approx(4 * 0.010 * 3 * peak)
     com = limb_masses.limb_masses(other).links["trunk"].com
     assert np.allclose(com[1:], 0, atol=1e-15)
+
+
+def test_the_trunk_is_the_root_with_all_that_is_fixed_to_it():
+    whole = limb_masses.limb_masses(leg(**bolted_file()))
+    assert whole.trunk == pytest.approx(5.100001, abs=1e-12)
+    assert whole.limb == pytest.approx(2.0, abs=1e-12)
+    assert whole.total == pytest.approx(7.100001, abs=1e-12)
+    pair = {"left": {}, "right": {"mirror": True}}
+    both = limb_masses.limb_masses(leg(**bolted_file(), limbs=pair))
+    assert both.limb == whole.limb
+    assert both.trunk == pytest.approx(1e-6 + 2 * 5.1, abs=1e-12)
+    assert both.total == pytest.approx(both.trunk + 2 * both.limb, abs=1e-12)

@@ -12,6 +12,7 @@ from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.motors import catalogue
 from hyperleg_design.robot.names import JOINTS, VARIANTS
 from hyperleg_design.robot.parameters import values as parameters
+from hyperleg_design.sizing.analysis import analyze
 from hyperleg_design.sizing.envelope import MotorEnvelope, torque_limits
 from hyperleg_design.sizing.zonotope import support
 from hyperleg_design.sweep.measuring import measure, measures
@@ -213,3 +214,18 @@ def test_a_measure_needs_a_name_of_its_own_and_a_direction():
     with pytest.raises(ValueError, match="another"):
         measure.measure("kg", "best")(another)
     assert "another" not in measure.MEASURES
+
+
+def test_at_low_voltage_measures_at_standstill_follow_the_stall_torque():
+    low = load_design("hyperleg", overrides={"electrical.voltage_ratio": 0.25})
+    found = analyze(low)
+    less, least = (
+        {name: float(values[0]) for name, values in measures.evaluate(design).items()}
+        for design in (low, low.with_values({"electrical.voltage_ratio": 0.2}))
+    )
+    for joint, torque in found["torque_alone"].items():
+        assert less[f"torque_alone.{joint}"] == pytest.approx(torque)
+    assert less["zonotope_to_box_volume"] == pytest.approx(found["zonotope_to_box_volume"])
+    # below the hip all stall torques, in proportion to the voltage, are below the peak torques
+    assert least["push_off_use"] == pytest.approx(1.25 * less["push_off_use"])
+    assert least["max_joint_torque.knee"] == pytest.approx(0.8 * less["max_joint_torque.knee"])
