@@ -33,12 +33,12 @@ class Effort:
 
     @property
     def seconds(self) -> float:
-        """Processor time [s]."""
+        """Processor time of all designs and trials [s]."""
         return self.designs * SECONDS_A_DESIGN + self.trials * SECONDS_A_TRIAL
 
     @property
     def memory(self) -> float:
-        """Memory [B]."""
+        """Memory that the summary and the page of the sweep take [B]."""
         return self.designs * BYTES_A_DESIGN
 
     def text(self) -> str:
