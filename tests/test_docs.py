@@ -23,6 +23,7 @@ TUTORIALS = [
     *sorted((ROOT / "docs" / "tutorials").glob("*.md")),
     ROOT / "docs" / "how-to" / "add_a_motor.md",
     ROOT / "docs" / "how-to" / "add_a_robot.md",
+    ROOT / "docs" / "how-to" / "define_a_sweep.md",
     ROOT / "docs" / "how-to" / "look_at_a_robot.md",
 ]
 LONG = ("train_and_evaluate", "look_at_a_robot")

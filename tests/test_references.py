@@ -16,7 +16,7 @@ ROOMS = "|".join(sorted(path.name for path in PACKAGE.iterdir() if (path / "__in
 DOTTED = re.compile(rf"`(?:hyperleg_design\.)?((?:{ROOMS})(?:\.\w+)+)`")
 """A module of a room, or a name in it, such as `robot.design.load_design`."""
 FILE = re.compile(r"`([\w/]+/\w+\.py)`")
-FILES = (".json", ".xml", ".yaml")
+FILES = (".json", ".xacro", ".xml", ".yaml")
 """Endings of names of files, which may begin as a room's does."""
 PAST = ("history.md", "rules.md", "earlier_trials.md", "posterior_trials.md")
 """Pages on earlier versions."""

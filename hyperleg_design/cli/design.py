@@ -250,6 +250,9 @@ class Sweep(Printing):
     """Folders of trainings; the shipped policies by default."""
     batch: Annotated[int, AtLeast(1)] = 16
     """Designs evaluated side by side; a killed run loses at most those."""
+    most_designs: Annotated[int, AtLeast(1)] = 1_000_000
+    """Number of designs above which the sweep is refused, since its page takes about 2 GB of memory
+    for a million."""
     scheduler: str = ""
     """Address of a Dask scheduler, such as tcp://host:8786; this process by default."""
 
@@ -257,6 +260,7 @@ class Sweep(Printing):
         """Run the sweep or what is left of it, write its page, and print a summary."""
         from hyperleg_design.report.sweep.page import sweep_report
         from hyperleg_design.report.sweep.trials import evaluated_report
+        from hyperleg_design.sweep.effort import WORTH_SAYING, check_effort, effort_of
         from hyperleg_design.sweep.jobs import cluster
         from hyperleg_design.sweep.run import run_sweep
         from hyperleg_design.sweep.space import load_sweep
@@ -266,6 +270,10 @@ class Sweep(Printing):
         sweep, show = load_sweep(self.file), not self.json
         protocols = self.evaluate or sweep.evaluated
         wanted = plan(sweep, protocols, seeds=self.seeds, policies=self.policies)
+        effort = effort_of(sweep, wanted)
+        check_effort(effort, self.most_designs, sweep.source)
+        if show and effort.seconds >= WORTH_SAYING:
+            print(effort.text(), file=sys.stderr, flush=True)
         with cluster(self.scheduler) as executor:
             result = run_sweep(
                 sweep, self.out, resume=not self.restart, progress=show, executor=executor

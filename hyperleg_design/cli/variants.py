@@ -11,6 +11,11 @@ import tyro
 from hyperleg_design.cli.arguments import AtLeast
 from hyperleg_design.cli.output import Printing, emit
 
+COMPARISON = """
+Each policy is compared with the one under `against`: a ratio below 1 means that the policy costs
+less (or takes less time), and more_falls below 0 that it falls in fewer trials."""
+"""What is printed above the table of comparisons."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Variants(Printing):
@@ -65,5 +70,6 @@ class Variants(Printing):
         drawn = [*designs.leaves, "trials"]
         print(check.rows.drop(columns=drawn).to_string(index=False, float_format="{:.3f}".format))
         if len(check.comparisons):
+            print(COMPARISON)
             print(check.comparisons.to_string(index=False, float_format="{:.3f}".format))
         print(f"tables in {folder}")

@@ -53,10 +53,11 @@ class HeldOutCheck:
     `steady_speed` [m/s]; of T-tests `time` [s], `cost_of_transport` and `mean_deviation` [m]), and
     the drawn leaves by path."""
     comparisons: pd.DataFrame
-    """A row for each other policy against the first: `cost_ratio` (first over other, median over
-    the designs on which both arrive), of T-tests `time_ratio` as well, `rank_correlation`
-    (Spearman's over these designs, of their costs in walks and of their times in T-tests),
-    `designs` (how many those are), `more_falls` (share of trials, first less other)."""
+    """A row for each policy that the first is compared with: `policy` (the first), `against` (the
+    other), `cost_ratio` (of `policy` over `against`, median over the designs on which both
+    arrive), of T-tests `time_ratio` as well, `rank_correlation` (Spearman's over these designs, of
+    their costs in walks and of their times in T-tests), `designs` (how many those are),
+    `more_falls` (share of trials in which `policy` falls, less that of `against`)."""
 
 
 def held_out_designs(
@@ -119,7 +120,11 @@ def check_held_out(
     table = pd.DataFrame(rows)
     first = table[table["policy"] == str(first_name)]
     others = [
-        {"policy": str(name), **compared(first, table[table["policy"] == str(name)])}
+        {
+            "policy": str(first_name),
+            "against": str(name),
+            **compared(first, table[table["policy"] == str(name)]),
+        }
         for name in policies[1:]
     ]
     return HeldOutCheck(table, pd.DataFrame(others))

@@ -2,24 +2,34 @@
 
 `observation.state`, `observation.velocity` and `observation.effort` are positions [rad], velocities
 [rad/s] and torques [Nm] of the joints before friction; `action` is what the joint controllers were
-asked for [rad]. The task of an episode is the name of its protocol.
+asked for [rad]. `observation.base_position` [m], `observation.base_orientation` (w, x, y, z) and
+`observation.base_velocity` [m/s] are those of the root link in the world. The task of an episode is
+the name of its protocol.
+
+Beside what LeRobot reads, the folder holds `hyperleg.json`, the metadata that a diagnosis reads
+(unit of the positions, gains of the joint controllers, base, gravity), and the design of the robot.
 """
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.writing import output_folder, write_json
+from hyperleg_design.robot.build import design_yaml
+from hyperleg_design.robot.models import GRAVITY
+from hyperleg_design.simulation.drives.actuation import actuation_model
+from hyperleg_design.writing import output_folder, write_json, write_text
 
 if TYPE_CHECKING:
     from hyperleg_design.evaluation.result import Evaluation
     from hyperleg_design.evaluation.rollout import Trial
+    from hyperleg_design.robot.parameters.described import RobotDesign
 
 VERSION = "v3.0"
 """Version of LeRobot's dataset format."""
@@ -31,6 +41,14 @@ SIGNALS = {
     "action": "joint_target",
 }
 """Signal of a trial by feature."""
+BASE = {
+    "observation.base_position": ("base_position", ("x", "y", "z")),
+    "observation.base_orientation": ("base_orientation", ("w", "x", "y", "z")),
+    "observation.base_velocity": ("base_velocity", ("x", "y", "z")),
+}
+"""Signal of a trial and names of its columns by feature of the root link."""
+METADATA = "hyperleg.json"
+"""File of the metadata for a diagnosis."""
 COUNTERS = ("frame_index", "episode_index", "index", "task_index")
 QUANTILES = {"q01": 0.01, "q10": 0.1, "q50": 0.5, "q90": 0.9, "q99": 0.99}
 
@@ -72,6 +90,7 @@ def write_lerobot(folder: str | os.PathLike[str], evaluations: Sequence[Evaluati
                 f"differ between robots: expects {', '.join(joints)} at {rate} Hz in one dataset",
             )
     tasks = list(dict.fromkeys(task for _, task in trials))
+    designs = _different({id(trial.design): trial.design for trial, _ in trials}.values())
     columns, episodes, first = [], [], 0
     for number, (trial, task) in enumerate(trials):
         frames = _frames(trial, rate)
@@ -98,7 +117,43 @@ def write_lerobot(folder: str | os.PathLike[str], evaluations: Sequence[Evaluati
         write_json(place / "meta" / "stats.json", {n: _statistics(v) for n, v in table.items()})
         robot = evaluations[0].design
         write_json(place / "meta" / "info.json", _info(robot, joints, rate, trials, tasks, first))
+        write_json(place / METADATA, _metadata(designs, joints))
+        if len(designs) == 1:
+            write_text(place / _robot_file(designs[0]), design_yaml(designs[0]))
     return Path(folder)
+
+
+def _different(designs: Iterable[RobotDesign]) -> list[RobotDesign]:
+    """Designs without repeats."""
+    return list({json.dumps(design.to_mapping()): design for design in designs}.values())
+
+
+def _robot_file(design: RobotDesign) -> str:
+    return f"{''.join(c if c.isalnum() or c in '-.' else '_' for c in design.name)}.yaml"
+
+
+def _metadata(designs: Sequence[RobotDesign], joints: tuple[str, ...]) -> dict[str, Any]:
+    """What a diagnosis has to know of the dataset; robot and gains where all trials share them."""
+    gains = {tuple(_gains(design, len(joints))) for design in designs}
+    known: dict[str, Any] = {
+        "units": {"position": "rad"},
+        "base": "floating",
+        "gravity": [0.0, 0.0, -GRAVITY],
+        "targets": "kept",
+        "notes": "simulated",
+    }
+    if len(gains) == 1:
+        known["gains"] = dict(zip(joints, map(list, gains.pop()), strict=True))
+    if len(designs) == 1:
+        known["robot"] = _robot_file(designs[0])
+    return known
+
+
+def _gains(design: RobotDesign, joints: int) -> list[tuple[float, float]]:
+    """Stiffness [Nm/rad] and damping [Nms/rad] of each joint of all limbs."""
+    model = actuation_model(design)
+    limb = list(zip(model.stiffness.tolist(), model.damping.tolist(), strict=True))
+    return limb * (joints // len(limb))
 
 
 def _rate(trial: Trial) -> int:
@@ -110,7 +165,9 @@ def _frames(trial: Trial, rate: int) -> dict[str, np.ndarray]:
     """Signals at the start of each policy step, and the time since the episode's start [s]."""
     columns = {
         feature: np.asarray(getattr(trial, signal), np.float32)[:: trial.substeps]
-        for feature, signal in SIGNALS.items()
+        for feature, signal in (
+            SIGNALS | {name: signal for name, (signal, _) in BASE.items()}
+        ).items()
     }
     count = len(columns["observation.state"])
     return {**columns, "timestamp": (np.arange(count) / rate).astype(np.float32)}
@@ -170,6 +227,10 @@ def _info(
     features: dict[str, Any] = {
         feature: {"dtype": "float32", "shape": [len(joints)], "names": list(joints)}
         for feature in SIGNALS
+    }
+    features |= {
+        feature: {"dtype": "float32", "shape": [len(names)], "names": list(names)}
+        for feature, (_, names) in BASE.items()
     }
     features["timestamp"] = {"dtype": "float32", "shape": [1], "names": None}
     features |= {name: {"dtype": "int64", "shape": [1], "names": None} for name in COUNTERS}

@@ -10,6 +10,7 @@ from hyperleg_design.evaluation.measures import OUTCOMES, measure_of
 from hyperleg_design.evaluation.result import by_checkpoint, counted
 from hyperleg_design.evaluation.result_tables import trial_table
 from hyperleg_design.evaluation.statistics import Estimate
+from hyperleg_design.report.lacking_text import lacking_text
 from hyperleg_design.report.text import table
 from hyperleg_design.writing import plain
 
@@ -93,7 +94,8 @@ def evaluation_text(rows: Sequence[dict[str, Any]], *, everything: bool = False)
     """Write the rows of `evaluation_rows` for a terminal: how trials ended, and a table for each
     protocol, variant and design.
 
-    Measures that no trial has, such as those of a knee that a robot lacks, are only named below it.
+    Measures that no trial has, such as those of a knee that a robot lacks, are only named below it,
+    with the reason where it is known.
 
     Args:
         rows: one for each of these and each measure.
@@ -124,7 +126,7 @@ def evaluation_text(rows: Sequence[dict[str, Any]], *, everything: bool = False)
         if "continuous_use" in shown and (own["continuous_use"]["mean"] or 0.0) > 1.0:
             texts[-1] += f"\n{OVERHEATS}"
         if lacking:
-            texts[-1] += f"\nwithout a value in any trial: {', '.join(lacking)}"
+            texts[-1] += f"\n{lacking_text(own, lacking)}"
         if len(shown) < len(own):
             texts[-1] += f"\n{len(own) - len(shown)} more measures with --all"
     return "\n\n".join(texts)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+import shlex
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, cast
@@ -54,10 +55,12 @@ def load_robot(
     """
     path = resources.find("descriptions", name)
     if family_of(path) != FAMILY:
-        return load_design(name, overrides=overrides, overlays=overlays, variant=variant)
+        design = load_design(name, overrides=overrides, overlays=overlays, variant=variant)
+        return dataclasses.replace(design, path=str(path))
     if variant:
         raise InputError("variant", "", variant, f"{name} has no variants; leave it out")
-    return changed_robot(_read(path), overrides=overrides, overlays=overlays)
+    tree = dataclasses.replace(_read(path), path=str(path))
+    return changed_robot(tree, overrides=overrides, overlays=overlays)
 
 
 def changed_robot(
@@ -96,13 +99,13 @@ def design_argument(design: RobotDesign) -> str:
         design: a robot or batch.
 
     Returns:
-        The name of a shipped design, else the file that it was read from: with its folder where
-        that lies in the working directory.
+        The name of a shipped design, else the path of the file that it was read from, quoted for
+        a shell. A relative path counts from the working directory in which it was read.
     """
-    if design.name in resources.names("descriptions") or not design.source:
-        return design.name
-    source = Path(design.source)
-    return str(source) if source.is_file() else source.name
+    path = Path(design.path)
+    if design.path and path.parent != resources.content_folder("descriptions"):
+        return shlex.quote(design.path)
+    return path.stem or design.name
 
 
 def robot_from_mapping(data: Mapping[str, Any], where: str) -> RobotDesign:

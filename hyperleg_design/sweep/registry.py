@@ -7,6 +7,7 @@ enough where only one of the protocols at hand has it.
 
 from __future__ import annotations
 
+import difflib
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,12 +15,13 @@ from functools import cache
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation import measures as trial_measures
-from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.sweep.measuring import measures as sizing
 from hyperleg_design.sweep.measuring.measure import MEASURES, TREE
 
 PROTOCOLS = {"walk": trial_measures.WALK, "t_test": trial_measures.T_TEST}
 """Measures of trials by protocol."""
+MOST_NEAREST = 5
+"""Measures that the error of an unknown one names."""
 _WAYPOINT = re.compile(r"waypoint_[1-9]\d*")
 """Measures that a T-test has for each waypoint of its course."""
 _BETTER = {trial_measures.LESS: "low", trial_measures.MORE: "high", trial_measures.NEITHER: ""}
@@ -148,13 +150,33 @@ def resolve(name: str, protocols: Sequence[str] = (), where: str = "measures") -
         raise InputError(
             where, "", name, f"needs that {' or '.join(having)} is evaluated (--evaluate)"
         )
-    raise InputError(
-        where,
-        "",
-        name,
-        parameters.unknown(name, sorted(entries()), "measure")
-        + "; hyperleg list measures shows all",
-    )
+    nearest = ", ".join(nearest_measures(name))
+    question = f"did you mean {nearest}? " if nearest else ""
+    remedy = f"no such measure; {question}hyperleg list measures shows all"
+    raise InputError(where, "", name, remedy)
+
+
+def nearest_measures(name: str) -> list[str]:
+    """List measures that a name that does not exist may stand for.
+
+    Args:
+        name: such as `mass` or `walk.cot`.
+
+    Returns:
+        Full names, the shortest first: of measures that have the name as one of their words
+        (`leg_mass`) or as their initials (`walk.cost_of_transport`) or, where there are none, of
+        those that are spelled most alike.
+    """
+    protocol, _, last = name.rpartition(".")
+    alike = []
+    for full in entries():
+        own, _, measure = full.rpartition(".")
+        words = measure.split("_")
+        initials = "".join(word[:1] for word in words)
+        if protocol in ("", own) and (last in words or last == initials):
+            alike.append(full)
+    near = sorted(alike, key=len) or difflib.get_close_matches(name[:100], entries(), n=3)
+    return near[:MOST_NEAREST]
 
 
 def label(name: str) -> str:

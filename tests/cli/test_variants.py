@@ -13,7 +13,7 @@ from hyperleg_design import cli
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.simulation.design_spread import DesignSpread
 
-POLICY = "walk_upright-toe-0"
+POLICY, OTHER = "walk_upright-toe-0", "walk_upright-toe-1"
 SPREAD = {"ranges": {"toe.mass": {"low": 0.1, "high": 0.4}}, "pool": 4, "held_out": 2}
 SHORT = {
     "kind": "walk",
@@ -51,6 +51,15 @@ def test_tables_json_and_files_say_the_same(arguments, tmp_path, capsys, monkeyp
     (comparison,) = printed["comparisons"]
     assert comparison["more_falls"] == 0.0
     assert (comparison["cost_ratio"] is None) == (comparison["designs"] < 2)
+
+
+def test_the_printed_comparison_says_which_policy_is_compared_with_which(arguments, capsys):
+    assert cli.main(["variants", POLICY, OTHER, *arguments]) == 0
+    *_, said, below, heads, row, _ = capsys.readouterr().out.splitlines()
+    assert said.startswith("Each policy is compared with the one under `against`")
+    assert below.endswith("more_falls below 0 that it falls in fewer trials.")
+    assert heads.split()[:2] == ["policy", "against"]
+    assert row.split()[:2] == [POLICY, OTHER]
 
 
 @pytest.mark.parametrize(

@@ -135,8 +135,9 @@ def test_a_robot_that_cannot_be_simulated_says_so_first():
 def test_the_training_of_a_file_names_the_file_and_the_folder_of_motors(tmp_path, monkeypatch):
     text = (load_robot("parallel_ankle").to_mapping(), tmp_path / "dog.yaml")
     text[1].write_text(json.dumps(text[0] | {"name": "rex"}))
-    with pytest.raises(InputError, match=r"--design dog.yaml --out FOLDER/walk_any-rex-0"):
+    named = f"--design {re.escape(str(text[1]))}"
+    with pytest.raises(InputError, match=f"{named} --out FOLDER/walk_any-rex-0"):
         policies_for("walk", load_robot(text[1]), 3)
     monkeypatch.setattr(policy_choice, "folder_option", lambda: " --motors mine")
-    with pytest.raises(InputError, match=r"--design dog.yaml --motors mine --out FOLDER"):
+    with pytest.raises(InputError, match=f"{named} --motors mine --out FOLDER"):
         policies_for("walk", load_robot(text[1]), 3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -23,22 +24,43 @@ def test_the_example_of_the_page_loads(tmp_path):
     assert transmission.joint_names(load_robot(path)) == ("hip", "knee")
 
 
-def test_a_file_may_build_on_another(tmp_path, monkeypatch):
+def test_a_file_may_build_on_another(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text("base: mini_cheetah\nactuators: {knee: {gear: 8}}\n")
     design = load_robot(path)
     assert (design.name, design["actuators.knee.gear"]) == ("mine", 8.0)
     assert pickle.loads(pickle.dumps(design)).bases == design.bases == ("mini_cheetah",)
-    assert design_argument(design) == "mine.yaml"
-    assert design_argument(design.with_values({"links.trunk.mass": 4.0})) == "mine.yaml"
-    assert design_argument(load_robot("mini_cheetah")) == "mini_cheetah"
-    monkeypatch.chdir(tmp_path.parent)
-    assert design_argument(load_robot(f"{tmp_path.name}/mine.yaml")) == f"{tmp_path.name}/mine.yaml"
     path.write_text(yaml.safe_dump({"family": "octopus"}))
     with pytest.raises(InputError, match=r"family.*octopus.*hyperleg, tree"):
         load_robot(path)
     with pytest.raises(InputError, match="no variants"):
         load_robot("mini_cheetah", variant="toe_locked")
+
+
+@pytest.mark.parametrize("base", ["mini_cheetah", "hyperleg"])
+def test_a_printed_argument_finds_the_design_from_where_it_was_read(base, tmp_path, monkeypatch):
+    (tmp_path / "deep" / "two words").mkdir(parents=True)
+    (tmp_path / "beside").mkdir()
+    file = tmp_path / "deep" / "two words" / "mine.yaml"
+    file.write_text(f"base: {base}\nname: rex\ncontact: {{friction: 0.6}}\n")
+    for folder, given in (
+        (tmp_path, "deep/two words/mine.yaml"),
+        (tmp_path / "beside", "../deep/two words/mine.yaml"),
+        (tmp_path, str(file)),
+    ):
+        monkeypatch.chdir(folder)
+        design = load_robot(given).with_values({"contact.friction": np.array([0.4, 0.5])})
+        for copy in (design.take(1), pickle.loads(pickle.dumps(design))):
+            (argument,) = shlex.split(design_argument(copy))
+            assert load_robot(argument)["contact.friction"] == 0.6
+
+
+def test_a_shipped_design_and_one_of_no_file_are_named():
+    assert design_argument(load_robot("mini_cheetah")) == "mini_cheetah"
+    assert design_argument(load_robot("mini_cheetah").with_values({"links.trunk.mass": 4.0})) == (
+        "mini_cheetah"
+    )
+    assert design_argument(robot_from_mapping(leg().to_mapping(), "here")) == leg().name
 
 
 def test_designs_travel_to_other_processes_and_back_from_mappings():

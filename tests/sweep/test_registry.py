@@ -43,6 +43,27 @@ def test_a_name_that_is_not_clear_is_one_clear_error(name, protocols, text):
         registry.resolve(name, protocols)
 
 
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [
+        ("mass", ["total_mass", "leg_mass"]),
+        ("walk.cot", ["walk.cost_of_transport"]),
+        ("cot", ["walk.cost_of_transport", "t_test.cost_of_transport"]),
+        ("leg_mas", ["leg_mass"]),
+        ("t_test.tme", ["t_test.time"]),
+    ],
+)
+def test_an_unknown_measure_is_answered_with_those_that_it_may_stand_for(name, near):
+    assert set(near) <= set(registry.nearest_measures(name))
+    with pytest.raises(InputError, match=f"did you mean .*{near[0]}.*list measures shows all"):
+        registry.resolve(name, ["walk", "t_test"])
+
+
+def test_no_measure_of_another_protocol_or_of_no_likeness_is_proposed():
+    assert registry.nearest_measures("walk.cot") == ["walk.cost_of_transport"]
+    assert registry.nearest_measures("zzzzzzzz") == []
+
+
 def test_labels_have_units():
     assert registry.label("walk.grf_peak") == "walk, grf peak [N]"
     assert registry.label("swing_inertia") == "swing inertia [kg m²]"

@@ -61,6 +61,7 @@ def test_set_and_overrides_change_the_base():
     ("change", "words"),
     [
         ({"axis": {}}, ["axis", "did you mean axes"]),
+        ({"samples": 12}, ["samples", "There are axes, count, description"]),
         ({"design": None}, ["design", "is missing"]),
         ({"design": "hyperlegg"}, ["hyperlegg", "did you mean hyperleg?"]),
         ({"design": "toe_removed"}, ["toe_removed", "variants"]),

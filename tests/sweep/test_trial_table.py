@@ -10,6 +10,7 @@ from hyperleg_design.robot.ablation import ablate
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.parameters.values import leaves
 from hyperleg_design.sweep.space import load_sweep, sweep_from_mapping
+from hyperleg_design.sweep.spaces.definition import AS_DESCRIBED
 from hyperleg_design.sweep.trial_table import (
     acting_limits,
     best,
@@ -17,6 +18,7 @@ from hyperleg_design.sweep.trial_table import (
     design_table,
     front,
     sensitivities,
+    view_command,
     walks,
 )
 from hyperleg_design.sweep.trials.stored import stored
@@ -159,6 +161,20 @@ def test_the_command_builds_the_design_of_the_row():
         else:
             np.testing.assert_allclose(built[path], value, rtol=1e-9, err_msg=path)
     assert built.variant == ablate(sweep.base, "toe_removed_matched").variant
+
+
+def test_commands_of_a_design_beside_its_sweep_work_from_the_folder_of_the_command(
+    tmp_path, monkeypatch
+):
+    (tmp_path / "r").mkdir()
+    (tmp_path / "r" / "mine.yaml").write_text("base: mini_cheetah\n")
+    axes = "{links.trunk.mass: {values: [3.0, 4.0]}}"
+    (tmp_path / "r" / "sweep.yaml").write_text(f"design: mine.yaml\naxes: {axes}\n")
+    monkeypatch.chdir(tmp_path)
+    row = {"links.trunk.mass": 4.0, "variant": AS_DESCRIBED}
+    sweep = load_sweep("r/sweep.yaml")
+    for command in (build_command(sweep, row), view_command(sweep, row)):
+        assert " r/mine.yaml --set 'links.trunk.mass=4'" in command
 
 
 def test_trials_that_fell_say_nothing_of_the_cost_of_walking():

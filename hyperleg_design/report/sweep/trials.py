@@ -5,6 +5,7 @@ designs.
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from hyperleg_design.evaluation.measures import OUTCOMES
@@ -227,9 +228,23 @@ def _explorer(sweep: Sweep, designs: pd.DataFrame, fronts: pd.DataFrame, name: s
     numeric = [axis.name for axis in sweep.axes if axis.numeric]
     maps = [chosen for chosen in sweep.trial_maps if chosen.measure in labels]
     if not maps and numeric:
-        maps = [Map(numeric[0], "", measure) for measure in labels]
+        maps = [Map(numeric[0], "", measure) for measure in differing_first(designs, labels)]
     table = {str(column): designs[column].to_numpy() for column in designs}
     return explorer(sweep, table, labels, maps, front, name)
+
+
+def differing_first(designs: pd.DataFrame, names: Iterable[str]) -> list[str]:
+    """Put measures that are the same for every design, such as arrivals where all trials arrive,
+    behind those that differ.
+
+    Args:
+        designs: one row for each design.
+        names: columns of measures; missing numbers are left out.
+
+    Returns:
+        The names; within each of the two groups in the order in which they are given.
+    """
+    return sorted(names, key=lambda name: designs[name].nunique() < 2)
 
 
 def _limits(designs: pd.DataFrame, protocols: list[str]) -> Table:
@@ -263,8 +278,8 @@ def _sensitivity_table(followed: list[dict[str, Any]]) -> Table:
     headers = ["variant", "measure", "parameter", "elasticity", "low", "high", "effect [%]"]
     caption = (
         "Elasticity: change of the measure in per cent where the parameter grows by one per cent, "
-        "over all designs. Effect: change over the parameter's whole range; the first parameter of "
-        "a measure limits it most."
+        "over all designs. Effect: change of the measure over the parameter's whole range. The "
+        "parameters of each measure are listed in the order of their effects, the largest first."
     )
     return Table(*without_variants(headers, rows), caption)
 

@@ -35,7 +35,9 @@ class RobotDesign:
     origins: Mapping[str, Origin] = field(default_factory=dict, repr=False)
     """Origin of each leaf, by dotted path."""
     source: str = ""
-    """File it was read from."""
+    """File it was read from, by its folder and name, for messages."""
+    path: str = ""
+    """Path of that file from the working directory; empty where there is no file."""
 
     @property
     def copies(self) -> tuple[str, ...]:

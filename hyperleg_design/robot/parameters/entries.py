@@ -8,7 +8,7 @@ from typing import Any
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot.parameters.fields import Rule
-from hyperleg_design.robot.parameters.values import checked, unknown
+from hyperleg_design.robot.parameters.values import checked, some, unknown
 
 
 def checked_number(
@@ -93,12 +93,15 @@ def check_keys(
         optional: further keys that may be there.
 
     Raises:
-        InputError: an unknown key, with the nearest known one, or a missing key.
+        InputError: an unknown key, with the nearest known one and all others, or a missing key.
     """
     dot = f"{path}." if path else ""
     for key in data:
         if key not in (*needed, *optional):
-            remedy = unknown(str(key), sorted((*needed, *optional)))
+            keys = sorted((*needed, *optional))
+            remedy = unknown(str(key), keys)
+            if remedy.endswith("?"):
+                remedy += f" There are {some(keys)}"
             raise InputError(where, f"{dot}{key}", data[key], remedy)
     for key in needed:
         if key not in data:

@@ -76,6 +76,7 @@ class CheckedTreeDesign(TreeDesign):
             dict(self.origins),
             batched,
             self.bases,
+            self.path,
         )
 
 
@@ -86,10 +87,11 @@ def _restored(
     origins: Mapping[str, Origin],
     batched: Mapping[str, np.ndarray],
     bases: tuple[str, ...] = (),
+    path: str = "",
 ) -> TreeDesign:
     design = tree_design_from_mapping(data, name, source or name)
     restored = design.with_values(batched, name) if batched else design
-    return dataclasses.replace(restored, source=source, origins=origins, bases=bases)
+    return dataclasses.replace(restored, source=source, path=path, origins=origins, bases=bases)
 
 
 @cache

@@ -1,11 +1,13 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pandas as pd
 import pytest
 
 from hyperleg_design import cli
+from hyperleg_design.report.sweep.trials import differing_first
 
 SWEEP = """
 design: hyperleg
@@ -66,6 +68,21 @@ def test_tables_hold_every_design(ran):
     assert found["policies"][0]["designs"] == 2
     best = found["best"][0]
     assert best["walk.policy"] == designs.loc[best["sample"], "walk.policy"]
+
+
+def test_a_page_opens_on_a_measure_in_which_designs_differ():
+    walked = pd.DataFrame({"arrived": [1.0, 1.0, None], "fell": 0.0, "cost": [0.5, 0.4, None]})
+    assert differing_first(walked, ["arrived", "fell", "cost"]) == ["cost", "arrived", "fell"]
+    walked.loc[1, "arrived"] = 0.8
+    assert differing_first(walked, ["arrived", "fell", "cost"]) == ["arrived", "cost", "fell"]
+
+
+def test_the_views_of_the_page_begin_with_what_differs(ran):
+    page, designs = (ran / "index.html").read_text(), pd.read_parquet(ran / "evaluated.parquet")
+    first = re.search(r'"views": \[\{[^}]*"y": "([^"]+)"', page)
+    assert first is not None
+    assert designs["walk.arrived"].nunique() == 1
+    assert designs[first[1]].nunique() > 1
 
 
 def test_an_objective_that_no_protocol_gives_is_one_clear_error(ran, tmp_path, capsys):

@@ -2,7 +2,9 @@
 log an episode.
 
 `observation.state` is taken as positions, `action` as their targets, `observation.velocity` and
-`observation.effort` where a dataset has them. The source lacks gains, torques and, in most
+`observation.effort` where a dataset has them, and so are `observation.base_position`,
+`observation.base_orientation` and `observation.base_velocity` of a floating base, whose columns
+must be named x, y, z (w, x, y, z). The source lacks gains, torques and, in most
 datasets, velocities; its time stamps are the frame number over the frame rate, not measured. Arms
 of the SO, Koch and similar families are in degrees with the gripper as 0 .. 100; a side file
 `hyperleg.json` may say `units: {"position": "deg"}` or `"rad"`. Joints in normalised units (-100 ..
@@ -12,6 +14,7 @@ degrees: only the dataset's author knows.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -42,6 +45,12 @@ SIGNALS = {
     "observation.effort": "joint_torque",
 }
 """Signal of the log by feature of the dataset."""
+BASE = {
+    "observation.base_position": ("base_position", ["x", "y", "z"]),
+    "observation.base_orientation": ("base_orientation", ["w", "x", "y", "z"]),
+    "observation.base_velocity": ("base_velocity", ["x", "y", "z"]),
+}
+"""Signal of the log and names of its columns by feature of a floating base."""
 LARGEST_ANGLE = 4 * math.pi
 """Positions beyond are not radians."""
 
@@ -79,14 +88,21 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
         raise InputError(where, "features", sorted(features)[:6], "expects observation.state")
     motor_names = _names(features["observation.state"])
     joints = joint_names(user_metadata, motor_names, path.name)
-    table, rows_read, rows = _table(path, [f for f in SIGNALS if f in features])
+    base = {
+        feature: (signal, names)
+        for feature, (signal, names) in BASE.items()
+        if feature in features and _names(features[feature]) == names
+    }
+    table, rows_read, rows = _table(path, [*(f for f in SIGNALS if f in features), *base])
     scale, remarks = _scale(info, user_metadata, motor_names, table, path.name)
     remarks.append("time stamps are frame numbers over the frame rate, not measured")
     if rows_read < rows:
         remarks.append(blocks.shortened(rows, rows_read))
     lacking = lacks({signal for feature, signal in SIGNALS.items() if feature in features})
-    gains = [] if user_metadata.get("gains") else ["gains"]
-    remarks.append(f"the source lacks {', '.join([*lacking, *gains])}")
+    if not user_metadata.get("gains"):
+        lacking.append("gains")
+    if lacking:
+        remarks.append(f"the source lacks {', '.join(lacking)}")
     place = {
         feature: _columns(
             feature, _names(features[feature]), table[feature], motor_names, path.name
@@ -94,7 +110,7 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
         for feature in SIGNALS
         if feature in table
     }
-    logs = []
+    logs: list[Log] = []
     for episode in np.unique(table["episode_index"]):
         in_episode = table["episode_index"] == episode
         if in_episode.sum() < 2:
@@ -105,11 +121,14 @@ def read_lerobot(path: Path, metadata: Mapping[str, Any] | None = None) -> list[
             factors = scale[list(columns)] if signal != "joint_torque" else 1.0
             values = table[feature][in_episode][:, list(columns.values())]
             signals |= columns_of({signal: values * factors}, logged)
+        for feature, (signal, names) in base.items():
+            signals |= columns_of({signal: table[feature][in_episode]}, names)
         name = f"{path.name}_{int(episode):06d}"
         about: tuple[str, ...] = ("robot_type", "fps", "codebase_version")
         extra = {key: info[key] for key in about if key in info} | {"episode": int(episode)}
         time = table["timestamp"][in_episode]
-        logs.append(build_log(path, name, time, signals, {"extra": extra}, user_metadata, remarks))
+        log = build_log(path, name, time, signals, {"extra": extra}, user_metadata, remarks)
+        logs.append(dataclasses.replace(log, folder=str(path)))
     if not logs:
         raise InputError(path.name, "", None, "is an empty log: no episode has two frames")
     return logs

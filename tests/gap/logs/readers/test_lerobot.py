@@ -72,6 +72,25 @@ def test_episodes_in_degrees(tmp_path, version):
     assert log.metadata.extra["robot_type"] == "so101_follower"
 
 
+@pytest.mark.parametrize(("names", "read"), [("wxyz", True), ("xyzw", False)])
+def test_the_base_is_read_where_its_columns_are_named_in_the_usual_order(tmp_path, names, read):
+    folder = write(tmp_path / "set", robot="dog", scale=1.0, version="v3.0")
+    info = json.loads((folder / "meta" / "info.json").read_text())
+    shape = {"dtype": "float32", "shape": [4], "names": list(names)}
+    info["features"]["observation.base_orientation"] = shape
+    (folder / "meta" / "info.json").write_text(json.dumps(info))
+    path = folder / "data" / "chunk-000" / "file-000.parquet"
+    rows = pyarrow.parquet.read_table(path)
+    level = pyarrow.array([[1.0, 0.0, 0.0, 0.0]] * len(rows))
+    table = rows.append_column("observation.base_orientation", level)
+    pyarrow.parquet.write_table(table, path)
+    (log, *_) = open_log(folder)
+    assert ("base_orientation/w" in log.signals) == read
+    if read:
+        assert set(log.column("base_orientation/w")) == {1.0}
+        assert set(log.column("base_orientation/z")) == {0.0}
+
+
 def test_unknown_units_are_asked_for(tmp_path):
     folder = write(tmp_path / "set", robot="arm")
     with pytest.raises(InputError, match=r"units.position = 50.*no angle in rad"):
