@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError, in_short
+from hyperleg_design.errors import InputError
 from hyperleg_design.reading import short_name
 from hyperleg_design.robot.checks.check_urdf import check_urdf
+from hyperleg_design.robot.checks.mesh_files import WITHOUT, missing_meshes
 from hyperleg_design.robot.checks.urdf_xml import parse_xml
+from hyperleg_design.robot.mjcf_meshes import compiled
 
 MOST_RADIANS = 4 * math.pi + 1e-6
 """End of a range past which it is taken for degrees [rad]."""
@@ -84,7 +86,7 @@ def read_robot(path: str | Path, *, meshes: bool = True) -> FileRobot:
 
     Args:
         path: the file.
-        meshes: whether the meshes that a URDF names must be there.
+        meshes: whether the meshes that the file names must be there.
 
     Returns:
         Its links and joints, with the limits that the file states.
@@ -101,7 +103,7 @@ def read_robot(path: str | Path, *, meshes: bool = True) -> FileRobot:
     if root.tag == "robot":
         robot = _urdf(path, root, where, meshes)
     elif root.tag == "mujoco":
-        robot = _mjcf(path, where)
+        robot = _mjcf(path, where, meshes)
     else:
         remedy = "expects a URDF (<robot>) or an MJCF (<mujoco>)"
         if root.tag == "sdf":
@@ -133,12 +135,11 @@ def fit_name(name: str) -> str:
 
 
 def _urdf(path: Path, root: Any, where: str, meshes: bool) -> FileRobot:
-    for finding in check_urdf(path):
+    for finding in check_urdf(path, meshes=False):
         if finding.severity == "error":
             raise InputError(where, finding.place, None, f"{finding.message}; {finding.remedy}")
-    if meshes:
-        for mesh in root.iter("mesh"):
-            _require_mesh(str(mesh.get("filename", "")), path, where)
+    if meshes and (missing := missing_meshes(root, path)):
+        raise InputError(where, "<mesh filename>", missing[0], f"is missing; {WITHOUT}")
     links = {fit_name(e.get("name")): _urdf_link(e) for e in root.findall("link")}
     joints = {fit_name(e.get("name")): _urdf_joint(e) for e in root.findall("joint")}
     for name, joint in list(joints.items()):
@@ -148,25 +149,6 @@ def _urdf(path: Path, root: Any, where: str, meshes: bool) -> FileRobot:
     (base,) = [name for name in links if name not in carried]
     floating = base != WORLD
     return FileRobot(fit_name(root.get("name", "robot")), where, base, floating, links, joints)
-
-
-def _require_mesh(name: str, path: Path, where: str) -> None:
-    """Whether a mesh is there; `package://NAME/...` is looked for in the folders above the file."""
-    plain = re.sub(r"^(package|file|model)://", "", name)
-    package = name.startswith(("package://", "model://"))
-    places = [Path(plain)] if plain.startswith("/") and not package else []
-    for folder in path.resolve().parents:
-        places += [folder / plain]
-        if package:
-            places += [folder / plain.split("/", 1)[-1]]
-    if not any(place.is_file() for place in places):
-        raise InputError(
-            where,
-            "<mesh filename>",
-            name,
-            "is missing; put it where the file says, or import with --no-meshes (drawings are not "
-            "taken over in any case)",
-        )
 
 
 def _numbers(element: Any, key: str, default: str) -> np.ndarray:
@@ -227,14 +209,10 @@ def _rotation(turn: np.ndarray) -> np.ndarray:
     return turned(np.rad2deg(turn))
 
 
-def _mjcf(path: Path, where: str) -> FileRobot:
+def _mjcf(path: Path, where: str, meshes: bool) -> FileRobot:
     import mujoco
 
-    try:
-        model = mujoco.MjModel.from_xml_path(str(path))
-    except (ValueError, RuntimeError) as error:
-        remedy = f"MuJoCo does not compile it: {in_short(error, 200)}"
-        raise InputError(where, "<mujoco>", None, remedy) from None
+    model = compiled(path, where, meshes=meshes)
     first = [b for b in range(1, model.nbody) if model.body_parentid[b] == 0]
     free = [b for b in first if model.body_jntnum[b] and model.jnt_type[model.body_jntadr[b]] == 0]
     if len(free) > 1 or (free and len(first) > 1 and _moves(model, first, free[0])):

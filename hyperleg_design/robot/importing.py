@@ -72,7 +72,7 @@ def import_robot(
     Args:
         path: URDF or MJCF.
         actuation: YAML file, see the module.
-        meshes: whether the meshes that a URDF names must be there.
+        meshes: whether the meshes that the file names must be there.
 
     Returns:
         The design, and what `lint` and `check_housing` find.

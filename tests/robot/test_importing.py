@@ -133,6 +133,11 @@ BROKEN = {
         '<visual><geometry><mesh filename="package://no/such.stl"/></geometry></visual></link>',
         ["package://no/such.stl", "missing", "--no-meshes"],
     ),
+    "mesh beside it": (
+        "</link>",
+        '<visual><geometry><mesh filename="thigh.stl"/></geometry></visual></link>',
+        ["thigh.stl", "missing", "--no-meshes"],
+    ),
     "no XML": ("</robot>", "", ["line"]),
 }
 
@@ -153,6 +158,18 @@ def test_broken_files_are_one_clear_error_and_nothing_is_written(case, tmp_path,
         assert word in shown.err
     assert not out.exists()
     assert sorted(p.name for p in tmp_path.iterdir()) == ["leg.urdf", "motors.yaml"]
+
+
+@pytest.mark.parametrize(
+    "name", ["thigh.stl", "meshes/thigh.stl", "file:///gone/thigh.stl", "package://gone/thigh.stl"]
+)
+def test_meshes_may_be_missing_wherever_they_should_be(name, tmp_path, capsys):
+    path = tmp_path / "leg.urdf"
+    drawn = f'<visual><geometry><mesh filename="{name}"/></geometry></visual></link>'
+    path.write_text(urdf(leg()).replace("</link>", drawn, 1))
+    command = ["import", str(path), "--actuation", str(actuation(tmp_path / "motors.yaml"))]
+    assert main([*command, "--no-meshes"]) == 0
+    assert "leg: 2 joints" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -16,14 +16,16 @@ from hyperleg_design.robot.checks.check_urdf_joint import check_joint
 from hyperleg_design.robot.checks.check_urdf_link import check_link
 from hyperleg_design.robot.checks.check_urdf_mass import check_mass
 from hyperleg_design.robot.checks.finding import Finding
+from hyperleg_design.robot.checks.mesh_files import check_packages
 from hyperleg_design.robot.checks.urdf_xml import ends_of, numbers, parse_xml, place_of
 
 
-def check_urdf(source: str | Path) -> list[Finding]:
+def check_urdf(source: str | Path, *, meshes: bool = True) -> list[Finding]:
     """Everything wrong with a URDF.
 
     Args:
         source: a path, or the text itself.
+        meshes: whether to look for the meshes that a file names.
 
     Returns:
         Findings, errors first; empty where nothing is wrong.
@@ -51,11 +53,15 @@ def check_urdf(source: str | Path) -> list[Finding]:
         return [*findings, Finding("error", "<robot>", "has no links", "add at least one <link>")]
     findings += _tree(links, joints)
     carried = {end for joint in joints if joint.get("type") == "fixed" for end in ends_of(joint)}
+    is_text = isinstance(source, str) and source.lstrip().startswith("<")
+    drawn = Path(source) if meshes and not is_text else None
     for link in links:
-        findings += check_link(link, source, carried=link.get("name") in carried)
+        findings += check_link(link, drawn, carried=link.get("name") in carried)
     for joint in joints:
         findings += check_joint(joint, {j.get("name") for j in joints})
     findings += _weightless(links, joints)
+    if drawn is not None:
+        findings += check_packages(root, drawn)
     if not any(f.severity == "error" for f in findings):
         findings += _loads(root)
     return sorted(findings, key=lambda f: f.severity != "error")

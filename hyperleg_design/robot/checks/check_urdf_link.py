@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.robot.checks.finding import Finding
+from hyperleg_design.robot.checks.mesh_files import is_there
 from hyperleg_design.robot.checks.urdf_xml import check_origin, numbers, place_of
 
 SIZES = {
@@ -22,19 +23,20 @@ LARGEST_GYRATION = 5.0
 """Radius of gyration past which a robot's link looks like a mistake of unit [m]."""
 
 
-def check_link(link: Any, source: str | Path, *, carried: bool) -> list[Finding]:
+def check_link(link: Any, source: str | Path | None, *, carried: bool) -> list[Finding]:
     """Check one link of a URDF.
 
     Args:
         link: the element.
-        source: file or text of the URDF, which says where meshes are.
+        source: file of the URDF, which says where meshes are; None leaves them out.
         carried: whether the link is fixed to another one, where a point without inertia does no
             harm.
 
     Returns:
         What is wrong with its mass, inertia, drawings and meshes.
     """
-    return [*_inertial(link, carried), *_drawings(link), *_meshes(link, source)]
+    meshes = [] if source is None else _meshes(link, source)
+    return [*_inertial(link, carried), *_drawings(link), *meshes]
 
 
 def _inertial(link: Any, carried: bool) -> list[Finding]:
@@ -160,13 +162,11 @@ def _drawings(link: Any) -> list[Finding]:
 
 
 def _meshes(link: Any, source: str | Path) -> list[Finding]:
-    """Mesh files of a link that are not where the URDF says; `package://` names are left to ROS."""
+    """Mesh files of a link that are not where the URDF says; those of ROS packages are left out."""
     findings = []
     for mesh in link.iter("mesh"):
         name = (mesh.get("filename") or "").removeprefix("file://")
-        if "://" in name or (isinstance(source, str) and source.lstrip().startswith("<")):
-            continue
-        if not name or not (Path(source).parent / name).is_file():
+        if "://" not in name and not is_there(name, Path(source)):
             findings.append(
                 Finding(
                     "error",
