@@ -12,18 +12,14 @@ import numpy as np
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.reading import short_name
+from hyperleg_design.robot.checks.check_units import WORLD, check_ends, check_step
 from hyperleg_design.robot.checks.check_urdf import check_urdf
+from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.checks.mesh_files import WITHOUT, missing_meshes
 from hyperleg_design.robot.checks.urdf_xml import parse_xml
 from hyperleg_design.robot.mjcf_meshes import compiled
 
-MOST_RADIANS = 4 * math.pi + 1e-6
-"""End of a range past which it is taken for degrees [rad]."""
-LARGEST_STEP = 5.0
-"""Distance between joints past which it is taken for millimetres [m]."""
 MOVING = ("revolute", "continuous")
-WORLD = "world"
-"""Root link by which a URDF says that its robot is fixed to the ground."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,21 +100,27 @@ def read_robot(path: str | Path, *, meshes: bool = True) -> FileRobot:
         robot = _urdf(path, root, where, meshes)
     elif root.tag == "mujoco":
         robot = _mjcf(path, where, meshes)
+        _check_units(robot)
     else:
         remedy = "expects a URDF (<robot>) or an MJCF (<mujoco>)"
         if root.tag == "sdf":
             remedy = "is SDF, which is not read; convert it to URDF or MJCF first"
         raise InputError(where, f"<{root.tag}>", None, remedy)
-    for name, joint in robot.joints.items():
-        step = float(np.linalg.norm(joint.position))
-        if step > LARGEST_STEP:
-            remedy = f"m from {joint.parent}: looks like millimetres; URDF and MJCF use metres"
-            raise InputError(where, f"joint {name}", round(step, 3), remedy)
-        ends = [abs(e) for e in (joint.lower, joint.upper)]
-        if joint.kind == "revolute" and max(ends) > MOST_RADIANS:
-            remedy = "is the end of its range: looks like degrees; a URDF uses radians"
-            raise InputError(where, f"joint {name}", max(ends), remedy)
     return robot
+
+
+def _check_units(robot: FileRobot) -> None:
+    """Refuse what looks like millimetres or degrees; `check_urdf` does so for a URDF."""
+    for name, joint in robot.joints.items():
+        findings = check_step(f"joint {name}", joint.parent, joint.position)
+        if joint.kind == "revolute":
+            findings += check_ends(f"joint {name}", joint.lower, joint.upper)
+        for finding in findings:
+            raise InputError(robot.source, finding.place, None, _text(finding))
+
+
+def _text(finding: Finding) -> str:
+    return f"{finding.message}; {finding.remedy}"
 
 
 def fit_name(name: str) -> str:
@@ -137,7 +139,7 @@ def fit_name(name: str) -> str:
 def _urdf(path: Path, root: Any, where: str, meshes: bool) -> FileRobot:
     for finding in check_urdf(path, meshes=False):
         if finding.severity == "error":
-            raise InputError(where, finding.place, None, f"{finding.message}; {finding.remedy}")
+            raise InputError(where, finding.place, None, _text(finding))
     if meshes and (missing := missing_meshes(root, path)):
         raise InputError(where, "<mesh filename>", missing[0], f"is missing; {WITHOUT}")
     links = {fit_name(e.get("name")): _urdf_link(e) for e in root.findall("link")}

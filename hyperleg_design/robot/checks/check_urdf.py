@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design.errors import in_short
+from hyperleg_design.robot.checks.check_units import check_step, check_units, step_of
 from hyperleg_design.robot.checks.check_urdf_joint import check_joint
 from hyperleg_design.robot.checks.check_urdf_link import check_link
 from hyperleg_design.robot.checks.check_urdf_mass import check_mass
@@ -62,8 +63,11 @@ def check_urdf(source: str | Path, *, meshes: bool = True) -> list[Finding]:
     findings += _weightless(links, joints)
     if drawn is not None:
         findings += check_packages(root, drawn)
+    units = [finding for joint in joints for finding in check_units(joint)]
     if not any(f.severity == "error" for f in findings):
-        findings += _loads(root)
+        far = any(f.severity == "error" for j in joints for f in check_step("", "", step_of(j)))
+        findings += _loads(root, metre=1000.0 if far else 1.0)
+    findings += units
     return sorted(findings, key=lambda f: f.severity != "error")
 
 
@@ -207,8 +211,10 @@ def _weightless(links: list[Any], joints: list[Any]) -> list[Finding]:
     ]
 
 
-def _loads(root: Any) -> list[Finding]:
-    """Whether Pinocchio, which analyses it, takes it, and whether its mass fits its size."""
+def _loads(root: Any, metre: float) -> list[Finding]:
+    """Whether Pinocchio, which analyses it, takes it, and whether its mass fits its size, where a
+    metre has this length in the file.
+    """
     import pinocchio
     from lxml import etree  # type: ignore[import-untyped]
 
@@ -223,4 +229,4 @@ def _loads(root: Any) -> list[Finding]:
                 "correct that element",
             )
         ]
-    return check_mass(model)
+    return check_mass(model, metre)
