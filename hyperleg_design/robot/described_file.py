@@ -137,9 +137,10 @@ def fit_name(name: str) -> str:
 
 
 def _urdf(path: Path, root: Any, where: str, meshes: bool) -> FileRobot:
-    for finding in check_urdf(path, meshes=False):
-        if finding.severity == "error":
-            raise InputError(where, finding.place, None, _text(finding))
+    errors = [f for f in check_urdf(path, meshes=False) if f.severity == "error"]
+    if errors:
+        rest = f"; hyperleg check {path} lists all {len(errors)} errors" if errors[1:] else ""
+        raise InputError(where, errors[0].place, None, _text(errors[0]) + rest)
     if meshes and (missing := missing_meshes(root, path)):
         raise InputError(where, "<mesh filename>", missing[0], f"is missing; {WITHOUT}")
     links = {fit_name(e.get("name")): _urdf_link(e) for e in root.findall("link")}

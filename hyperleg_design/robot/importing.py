@@ -27,8 +27,9 @@ from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.build import design_yaml
 from hyperleg_design.robot.checks.check_housing import check_housing
+from hyperleg_design.robot.checks.check_urdf_link import is_point
 from hyperleg_design.robot.checks.finding import Finding
-from hyperleg_design.robot.described_file import FileJoint, FileRobot, read_robot
+from hyperleg_design.robot.described_file import FileJoint, FileLink, FileRobot, read_robot
 from hyperleg_design.robot.housing import housing
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.parameters import values as parameters
@@ -75,7 +76,7 @@ def import_robot(
         meshes: whether the meshes that the file names must be there.
 
     Returns:
-        The design, and what `lint` and `check_housing` find.
+        The design, and what `lint`, `placeholders` and `check_housing` find.
 
     Raises:
         InputError: the file is no robot (see `described_file.read_robot`), a joint without a motor,
@@ -91,7 +92,7 @@ def import_robot(
         if not error.field.startswith("links."):
             raise
         raise InputError(robot.source, error.field, error.value, error.remedy) from None
-    return design, [*lint(robot, design), *check_housing(design)]
+    return design, [*lint(robot, design), *placeholders(robot), *check_housing(design)]
 
 
 def write_imported(design: TreeDesign, out: str | Path) -> Path:
@@ -196,7 +197,7 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
                 "com": _leaf(link.com.tolist(), robot.source),
                 "inertia": _leaf(
                     [
-                        float(_real(link.inertia)[i])
+                        float(_real(link)[i])
                         for i in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
                     ],
                     robot.source,
@@ -282,8 +283,32 @@ def _matching(pattern: str, names: list[str], where: str, place: str) -> list[st
     return matching
 
 
-def _real(inertia: np.ndarray) -> np.ndarray:
-    """The inertia of a link; of a placeholder with moments of no body, a ball's, `(3, 3)`."""
+def placeholders(robot: FileRobot) -> list[Finding]:
+    """Find the links whose inertia no body has, but that are too small to matter.
+
+    Args:
+        robot: the file.
+
+    Returns:
+        Warnings that name what is taken in its place.
+    """
+    remedy = "its largest moment is taken in all directions; correct it in the file"
+    findings = []
+    for name, link in robot.links.items():
+        if not is_point(link.mass, link.inertia) and _real(link) is not link.inertia:
+            moments = ", ".join(f"{v:.4g}" for v in np.linalg.eigvalsh(link.inertia))
+            message = f"no body has this inertia (principal moments {moments} kg m^2)"
+            findings.append(Finding("warning", f"link {name}", message, remedy))
+    return findings
+
+
+def _real(link: FileLink) -> np.ndarray:
+    """The inertia of a link; of a point, zero, and of a placeholder with moments of no body, a
+    ball's, `(3, 3)`.
+    """
+    inertia = link.inertia
+    if is_point(link.mass, inertia):
+        return np.zeros((3, 3))
     low, middle, high = np.linalg.eigvalsh(inertia)
     real = low > 0 and high <= (low + middle) * (1 + 1e-6)
     if real or not 0 < high < DUMMY_INERTIA:

@@ -314,3 +314,30 @@ def test_pads_of_links_without_spheres(tmp_path):
     design, _ = import_robot(tmp_path / "hopper.urdf", actuation(tmp_path / "m.yaml", **motors))
     (pad,) = design.pad_sections.values()
     assert (list(pad.position), pad.radius) == ([0.0, 0.0, 0.0], 0.03)
+
+
+def test_an_inertia_of_no_body_on_a_mere_frame_is_a_warning(tmp_path):
+    wrong = """<link name="antenna"><inertial><mass value="1e-6"/><inertia ixx="2.4e-8"
+    iyy="2.8e-8" izz="3.8e-8" ixy="6.1e-8" ixz="0" iyz="0"/></inertial></link>
+    <link name="point"><inertial><mass value="0.2"/><inertia ixx="-5e-20" iyy="0" izz="0"/>
+    </inertial></link>
+    <joint name="mast" type="fixed"><parent link="base"/><child link="antenna"/></joint>
+    <joint name="end" type="fixed"><parent link="shank"/><child link="point"/></joint></robot>"""
+    path = tmp_path / "leg.urdf"
+    path.write_text(urdf(leg()).replace("</robot>", wrong))
+    design, (finding,) = import_robot(path, actuation(tmp_path / "motors.yaml"))
+    assert (finding.severity, finding.place) == ("warning", "link antenna")
+    assert "no body has this inertia" in finding.message
+    assert np.allclose(design["links.antenna.inertia"][:3], 9.09e-8, rtol=1e-2)
+    assert not np.any(design["links.point.inertia"])
+
+
+def test_the_first_error_says_where_the_others_are(tmp_path):
+    path = tmp_path / "leg.urdf"
+    path.write_text(urdf(leg()).replace('mass value="1.0"', 'mass value="-1.0"'))
+    with pytest.raises(InputError, match=rf"hyperleg check {path} lists all 3 errors"):
+        import_robot(path, actuation(tmp_path / "motors.yaml"))
+    path.write_text(urdf(leg()).replace('mass value="1.0"', 'mass value="-1.0"', 1))
+    with pytest.raises(InputError) as caught:
+        import_robot(path, actuation(tmp_path / "motors.yaml"))
+    assert "hyperleg check" not in str(caught.value)

@@ -22,6 +22,26 @@ SIZES = {
 LARGEST_GYRATION = 5.0
 """Radius of gyration past which a robot's link looks like a mistake of unit [m]."""
 
+POINT = 1e-6
+"""Radius of gyration up to which an inertia is that of a point, and its numbers what rounding left
+of zero [m]."""
+FRAME = 1e-3
+"""Mass up to which a link that is fixed to another counts as a mere frame [kg]."""
+BOX = "a box of edges a, b, c has m (b^2 + c^2) / 12 about a"
+
+
+def is_point(mass: float, inertia: np.ndarray) -> bool:
+    """Whether an inertia is zero but for rounding, compared with the mass.
+
+    Args:
+        mass: of the link [kg].
+        inertia: about the centre of mass [kg m^2], of any shape.
+
+    Returns:
+        Whether no entry exceeds that of a body with the radius of gyration `POINT`.
+    """
+    return bool(np.all(np.abs(inertia) <= mass * POINT**2))
+
 
 def check_link(link: Any, source: str | Path | None, *, carried: bool) -> list[Finding]:
     """Check one link of a URDF.
@@ -94,27 +114,31 @@ def _tensor(values: np.ndarray, mass: float, place: str, carried: bool) -> list[
     xx, yy, zz, xy, xz, yz = values
     principal = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     shown = ", ".join(f"{v:.4g}" for v in principal)
-    if not np.any(values) and carried:
+    if is_point(mass, values):
         message = f"has a mass of {mass:g} kg but no inertia, as a point has"
-        return [Finding("warning", place, message, "leave out the inertial of a mere frame")]
+        remedy = f"give it that of its body ({BOX})"
+        if carried and mass <= FRAME:
+            remedy = "leave out the inertial of a mere frame"
+        return [Finding("warning" if carried else "error", place, message, remedy)]
+    frame = carried and mass <= FRAME
     if principal[0] <= 1e-12 * principal[2]:
-        harmless = carried and principal[0] >= -1e-12 * principal[2]
+        harmless = frame or (carried and principal[0] >= -1e-12 * principal[2])
         return [
             Finding(
                 "warning" if harmless else "error",
                 place,
                 f"inertia is not positive definite (principal moments {shown} kg m^2)",
-                "check signs and products",
+                "leave out the inertial of a mere frame" if frame else "check signs and products",
             )
         ]
     if principal[2] > (principal[0] + principal[1]) * (1 + 1e-9):
         return [
             Finding(
-                "error",
+                "warning" if frame else "error",
                 place,
                 f"no body has this inertia (principal moments {shown} kg m^2)",
-                "the largest must not exceed the sum of the others; correct them in the file (a "
-                "box of edges a, b, c has m (b^2 + c^2) / 12 about a)",
+                f"the largest must not exceed the sum of the others; correct them in the file "
+                f"({BOX})",
             )
         ]
     gyration = math.sqrt(principal[2] / mass)
