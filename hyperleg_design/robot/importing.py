@@ -27,21 +27,18 @@ from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.build import design_yaml
 from hyperleg_design.robot.checks.check_housing import check_housing
-from hyperleg_design.robot.checks.check_urdf_link import is_point
 from hyperleg_design.robot.checks.finding import Finding
-from hyperleg_design.robot.described_file import FileJoint, FileLink, FileRobot, read_robot
+from hyperleg_design.robot.described_file import FileJoint, FileRobot, read_robot
 from hyperleg_design.robot.housing import housing
 from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.entries import check_keys
 from hyperleg_design.robot.parameters.motor_paths import with_motor_paths
+from hyperleg_design.robot.placeholders import placeholders, real_inertia
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_load import tree_design_from_mapping
 from hyperleg_design.writing import write_text
 
-DUMMY_INERTIA = 1e-5
-"""Moment of inertia up to which a link is a placeholder, as root links of URDFs often are, and gets
-the moments of a ball where it has those of no body [kg m^2]."""
 AGREES = 0.05
 """Relative difference up to which a limit of the file agrees with the motors [-]."""
 HEAD = "# Written by `hyperleg import`, which replaces this file until it is edited: {}\n"
@@ -154,6 +151,8 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
     """
     check_keys(data, where, "", (), tuple(KEYS))
     moving = [n for n, j in robot.joints.items() if j.kind != "fixed"]
+    if not moving:
+        raise InputError(robot.source, "joints", None, "has no joint that moves, so nothing to drive")
     lock = data.get("lock") or []
     if not isinstance(lock, list):
         raise InputError(where, "lock", lock, "expects a list of joints or patterns")
@@ -168,7 +167,7 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
     for pattern, held in _section(data, "actuators", where).items():
         own = pattern in _section(data, "transmission", where)
         own = own or pattern in _section(data, "rods", where)
-        names = [pattern] if own else _matching(pattern, free, where, "actuators")
+        names = [pattern] if own else _driven(pattern, robot, locked, where)
         _fields(held, where, f"actuators.{pattern}", "motor: RI70, gear: 9")
         for name in names:
             actuators[name] = _housed(robot, name, locked, held) | dict(held)
@@ -197,7 +196,7 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
                 "com": _leaf(link.com.tolist(), robot.source),
                 "inertia": _leaf(
                     [
-                        float(_real(link)[i])
+                        float(real_inertia(link)[i])
                         for i in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
                     ],
                     robot.source,
@@ -274,6 +273,25 @@ def _fields(held: Any, where: str, place: str, example: str) -> Mapping[str, Any
     return held
 
 
+def _driven(pattern: str, robot: FileRobot, locked: set[str], where: str) -> list[str]:
+    """Joints that a motor of this name or pattern drives.
+
+    Raises:
+        InputError: there are none, or they do not move.
+    """
+    joints = robot.joints
+    still = [name for name, joint in joints.items() if joint.kind == "fixed" or name in locked]
+    names = [name for name in joints if name not in still]
+    held = [name for name in still if fnmatchcase(name, pattern)]
+    if held and not any(fnmatchcase(name, pattern) for name in names):
+        why = f"is fixed in {robot.source}; leave out its motor"
+        if held[0] in locked:
+            why = "is under lock, so no motor drives it; leave out one of the two"
+        who = "" if held[0] == pattern else f"{held[0]} "
+        raise InputError(where, f"actuators.{pattern}", None, who + why)
+    return _matching(pattern, names, where, "actuators")
+
+
 def _matching(pattern: str, names: list[str], where: str, place: str) -> list[str]:
     matching = [name for name in names if fnmatchcase(name, pattern)]
     if not matching:
@@ -281,39 +299,6 @@ def _matching(pattern: str, names: list[str], where: str, place: str) -> list[st
         remedy = parameters.unknown(pattern, names, kind)
         raise InputError(where, f"{place}.{pattern}", None, remedy)
     return matching
-
-
-def placeholders(robot: FileRobot) -> list[Finding]:
-    """Find the links whose inertia no body has, but that are too small to matter.
-
-    Args:
-        robot: the file.
-
-    Returns:
-        Warnings that name what is taken in its place.
-    """
-    remedy = "its largest moment is taken in all directions; correct it in the file"
-    findings = []
-    for name, link in robot.links.items():
-        if not is_point(link.mass, link.inertia) and _real(link) is not link.inertia:
-            moments = ", ".join(f"{v:.4g}" for v in np.linalg.eigvalsh(link.inertia))
-            message = f"no body has this inertia (principal moments {moments} kg m^2)"
-            findings.append(Finding("warning", f"link {name}", message, remedy))
-    return findings
-
-
-def _real(link: FileLink) -> np.ndarray:
-    """The inertia of a link; of a point, zero, and of a placeholder with moments of no body, a
-    ball's, `(3, 3)`.
-    """
-    inertia = link.inertia
-    if is_point(link.mass, inertia):
-        return np.zeros((3, 3))
-    low, middle, high = np.linalg.eigvalsh(inertia)
-    real = low > 0 and high <= (low + middle) * (1 + 1e-6)
-    if real or not 0 < high < DUMMY_INERTIA:
-        return inertia
-    return float(high) * np.eye(3)
 
 
 def _leaf(value: Any, source: str, label: str = "vendor") -> dict[str, Any]:

@@ -180,6 +180,14 @@ def test_meshes_may_be_missing_wherever_they_should_be(name, tmp_path, capsys):
             ["joints.knee", "no motor; name one under actuators", "lock"],
         ),
         ({"actuators": LEG, "lock": ["elbow"]}, ["lock.elbow", "no such moving joint"]),
+        (
+            {"actuators": LEG, "lock": ["hip"]},
+            ["actuators.hip: is under lock, so no motor drives it"],
+        ),
+        (
+            {"actuators": {"h*": LEG["hip"], "knee": LEG["knee"]}, "lock": ["hip"]},
+            ["actuators.h*: hip is under lock"],
+        ),
         ({"actuators": LEG, "joints": {"elbow": {}}}, ["joints.elbow", "no such joint"]),
         ({"actuators": LEG, "lock": "hip"}, ["lock = 'hip'", "expects a list"]),
         ({"actuators": {"*": "RI70"}}, ["actuators.* = 'RI70'", "{motor: RI70, gear: 9}"]),
@@ -316,22 +324,6 @@ def test_pads_of_links_without_spheres(tmp_path):
     assert (list(pad.position), pad.radius) == ([0.0, 0.0, 0.0], 0.03)
 
 
-def test_an_inertia_of_no_body_on_a_mere_frame_is_a_warning(tmp_path):
-    wrong = """<link name="antenna"><inertial><mass value="1e-6"/><inertia ixx="2.4e-8"
-    iyy="2.8e-8" izz="3.8e-8" ixy="6.1e-8" ixz="0" iyz="0"/></inertial></link>
-    <link name="point"><inertial><mass value="0.2"/><inertia ixx="-5e-20" iyy="0" izz="0"/>
-    </inertial></link>
-    <joint name="mast" type="fixed"><parent link="base"/><child link="antenna"/></joint>
-    <joint name="end" type="fixed"><parent link="shank"/><child link="point"/></joint></robot>"""
-    path = tmp_path / "leg.urdf"
-    path.write_text(urdf(leg()).replace("</robot>", wrong))
-    design, (finding,) = import_robot(path, actuation(tmp_path / "motors.yaml"))
-    assert (finding.severity, finding.place) == ("warning", "link antenna")
-    assert "no body has this inertia" in finding.message
-    assert np.allclose(design["links.antenna.inertia"][:3], 9.09e-8, rtol=1e-2)
-    assert not np.any(design["links.point.inertia"])
-
-
 def test_the_first_error_says_where_the_others_are(tmp_path):
     path = tmp_path / "leg.urdf"
     path.write_text(urdf(leg()).replace('mass value="1.0"', 'mass value="-1.0"'))
@@ -341,3 +333,14 @@ def test_the_first_error_says_where_the_others_are(tmp_path):
     with pytest.raises(InputError) as caught:
         import_robot(path, actuation(tmp_path / "motors.yaml"))
     assert "hyperleg check" not in str(caught.value)
+
+
+def test_a_joint_that_the_file_fixes_has_no_motor(tmp_path):
+    path = tmp_path / "leg.urdf"
+    path.write_text(urdf(leg()).replace('type="revolute"', 'type="fixed"', 1))
+    motors = actuation(tmp_path / "motors.yaml")
+    with pytest.raises(InputError, match=r"motors\.yaml: actuators\.hip: is fixed in .*leg\.urdf"):
+        import_robot(path, motors)
+    path.write_text(path.read_text().replace('type="revolute"', 'type="fixed"'))
+    with pytest.raises(InputError, match=r"leg\.urdf: joints: has no joint that moves"):
+        import_robot(path, motors)
