@@ -25,6 +25,7 @@ import numpy as np
 from hyperleg_design.errors import InputError, OutputError
 from hyperleg_design.reading import read_yaml, short_name
 from hyperleg_design.robot import transmission
+from hyperleg_design.robot.assumed_posture import NEAREST, nearest_to_zero
 from hyperleg_design.robot.build import design_yaml
 from hyperleg_design.robot.checks.check_housing import check_housing
 from hyperleg_design.robot.checks.finding import Finding
@@ -316,12 +317,12 @@ def _joint(joint: FileJoint, source: str, locked: bool) -> dict[str, Any]:
     }
     if fixed:
         return section
-    lower, upper = float(np.rad2deg(joint.lower)), float(np.rad2deg(joint.upper))
+    lower, upper = (round(float(np.rad2deg(end)), 9) for end in (joint.lower, joint.upper))
     return section | {
         "axis": _leaf(joint.axis.tolist(), source),
         "lower_deg": _leaf(lower, source),
         "upper_deg": _leaf(upper, source),
-        "default_deg": float(np.clip(0.0, lower, upper)),
+        "default_deg": _leaf(nearest_to_zero(lower, upper), NEAREST, "assumed"),
         "coulomb": _leaf(joint.coulomb, source),
         "viscous": _leaf(joint.viscous, source),
     }
