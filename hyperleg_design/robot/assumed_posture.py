@@ -58,7 +58,5 @@ def posture_line(design: TreeDesign) -> str:
     bent = [f"{name} {angle:g}" for name, angle in assumed.items() if angle]
     count = f"{len(assumed)} joint{'s' if len(assumed) > 1 else ''}"
     angles = f"0, but {some(bent)}" if bent else "0"
-    return (
-        f"default_deg is assumed for {count} as {NEAREST}: {angles}; joints: {{NAME: {{default_deg: "
-        f"...}}}} in the actuation file states it"
-    )
+    remedy = "joints: {NAME: {default_deg: ...}} in the actuation file states it"
+    return f"default_deg is assumed for {count} as {NEAREST}: {angles}; {remedy}"

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import short_name
+from hyperleg_design.reading import given_path
 from hyperleg_design.robot.checks.check_units import WORLD, check_ends, check_step
 from hyperleg_design.robot.checks.check_urdf import check_urdf
 from hyperleg_design.robot.checks.finding import Finding
@@ -93,7 +93,7 @@ def read_robot(path: str | Path, *, meshes: bool = True) -> FileRobot:
     """
     path = Path(path)
     root, findings = parse_xml(path)
-    where = short_name(path)
+    where = given_path(path)
     if root is None:
         raise InputError(where, findings[0].place, None, findings[0].message)
     if root.tag == "robot":

@@ -18,7 +18,7 @@ from typing_extensions import override
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError, meant
-from hyperleg_design.reading import parse_yaml, read_yaml, short_name
+from hyperleg_design.reading import given_path, parse_yaml, read_yaml
 from hyperleg_design.robot.ablation import ablate, states
 from hyperleg_design.robot.checks.consistency import check_design
 from hyperleg_design.robot.masses import check_printed, lapsed
@@ -129,7 +129,7 @@ def changed(
     """
     for overlay in overlays:
         path = overlay_file(overlay)
-        design = _overlaid(design, read_yaml(path), short_name(path))
+        design = _overlaid(design, read_yaml(path), given_path(path))
     chosen = parse_overrides(overrides)
     return design.with_values(chosen, "--set") if chosen else design
 
@@ -196,14 +196,14 @@ def base_file(path: Path, name: Any) -> Path:
     if name not in shipped:
         known = [*shipped, *(f.stem for f in sorted(path.parent.glob("*.yaml")) if f != path)]
         remedy = f"no such design; {meant(str(name), known)}"
-        raise InputError(short_name(path), "base", name, remedy)
+        raise InputError(given_path(path), "base", name, remedy)
     return resources.find("descriptions", name)
 
 
 def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
     """Design of a file before ablation, and the variant that the file asks for."""
     data = with_motor_paths(read_yaml(path), path.parent)
-    where = short_name(path)
+    where = given_path(path)
     if path.resolve() in seen:
         raise InputError(where, "base", data.get("base"), "leads back to itself")
     if data.get("family", "hyperleg") != "hyperleg":

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError, OutputError
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml, short_name
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.assumed_posture import NEAREST, nearest_to_zero
 from hyperleg_design.robot.build import design_yaml
@@ -81,7 +81,7 @@ def import_robot(
             a pattern that matches nothing, or actuation that does not fit.
     """
     motors = Path(actuation)
-    data, where = with_motor_paths(read_yaml(motors), motors.parent), short_name(motors)
+    data, where = with_motor_paths(read_yaml(motors), motors.parent), given_path(motors)
     robot = read_robot(path, meshes=meshes)
     mapping = design_mapping(robot, data, where)
     try:
@@ -153,7 +153,9 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
     check_keys(data, where, "", (), tuple(KEYS))
     moving = [n for n, j in robot.joints.items() if j.kind != "fixed"]
     if not moving:
-        raise InputError(robot.source, "joints", None, "has no joint that moves, so nothing to drive")
+        raise InputError(
+            robot.source, "joints", None, "has no joint that moves, so nothing to drive"
+        )
     lock = data.get("lock") or []
     if not isinstance(lock, list):
         raise InputError(where, "lock", lock, "expects a list of joints or patterns")
@@ -177,9 +179,8 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
         more = f", nor have {', '.join(still[1:])}" if still[1:] else ""
         remedy = f"has no motor{more}; name one under actuators, or list the joint under lock"
         raise InputError(where, f"joints.{still[0]}", None, remedy)
-    joints = {
-        name: _joint(joint, robot.source, name in locked) for name, joint in robot.joints.items()
-    }
+    source = short_name(Path(robot.source))
+    joints = {name: _joint(joint, source, name in locked) for name, joint in robot.joints.items()}
     for pattern, held in _section(data, "joints", where).items():
         for name in _matching(pattern, list(robot.joints), where, "joints"):
             joints[name] |= _fields(held, where, f"joints.{pattern}", "stiffness: 50")
@@ -193,14 +194,14 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
         "trunk": trunk | dict(_section(data, "trunk", where)),
         "links": {
             name: {
-                "mass": _leaf(link.mass, robot.source),
-                "com": _leaf(link.com.tolist(), robot.source),
+                "mass": _leaf(link.mass, source),
+                "com": _leaf(link.com.tolist(), source),
                 "inertia": _leaf(
                     [
                         float(real_inertia(link)[i])
                         for i in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
                     ],
-                    robot.source,
+                    source,
                 ),
             }
             for name, link in robot.links.items()
@@ -242,8 +243,8 @@ def _pads(robot: FileRobot, given: Mapping[str, Any], where: str) -> dict[str, A
             for index, (place, radius) in enumerate(own):
                 mapping[f"{link}_{index}"] = {
                     "link": link,
-                    "position": _leaf(place.tolist(), robot.source),
-                    "radius": _leaf(radius, robot.source),
+                    "position": _leaf(place.tolist(), short_name(Path(robot.source))),
+                    "radius": _leaf(radius, short_name(Path(robot.source))),
                 } | dict(held or {})
     return mapping
 
@@ -257,7 +258,10 @@ def _housed(
     if name not in robot.joints:
         return {"housed_in": robot.root}
     link, place = housing(robot, name, locked)
-    return {"housed_in": link, "place": _leaf(place.tolist(), robot.source, "derived")}
+    return {
+        "housed_in": link,
+        "place": _leaf(place.tolist(), short_name(Path(robot.source)), "derived"),
+    }
 
 
 def _section(data: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:

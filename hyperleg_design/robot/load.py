@@ -10,7 +10,7 @@ from typing import Any, cast
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 from hyperleg_design.robot.design import (
     Design,
     base_file,
@@ -28,6 +28,9 @@ from hyperleg_design.robot.trees.tree_load import FAMILY, tree_design_from_mappi
 
 FAMILIES = (Design.family, FAMILY)
 """What `family:` may say; a file without it is of the first one."""
+
+XML = (".urdf", ".xml", ".mjcf", ".xacro")
+"""Endings of files that describe robots, but are no designs."""
 
 
 def load_robot(
@@ -84,7 +87,7 @@ def changed_robot(
     tree = cast("TreeDesign", design)
     for overlay in overlays:
         place = overlay_file(overlay)
-        tree = _overlaid(tree, read_yaml(place), short_name(place))
+        tree = _overlaid(tree, read_yaml(place), given_path(place))
     chosen = parse_overrides(overrides)
     return tree.with_values(chosen, "--set") if chosen else tree
 
@@ -96,13 +99,15 @@ def design_argument(design: RobotDesign) -> str:
         design: a robot or batch.
 
     Returns:
-        The name of a shipped design, else the file that it was read from: with its folder where
-        that lies in the working directory.
+        The name of a shipped design, else the file that it was read from: its path from the working
+        directory, or its name alone where it does not lie there.
     """
     if design.name in resources.names("descriptions") or not design.source:
         return design.name
     source = Path(design.source)
-    return str(source) if source.is_file() else source.name
+    if source.is_relative_to(Path.cwd()):
+        source = source.relative_to(Path.cwd())
+    return str(source) if source.is_file() and not source.is_absolute() else source.name
 
 
 def robot_from_mapping(data: Mapping[str, Any], where: str) -> RobotDesign:
@@ -133,18 +138,21 @@ def family_of(path: Path) -> str:
         One of `FAMILIES`.
 
     Raises:
-        InputError: an unknown family, or a base that leads back to itself.
+        InputError: a URDF or MJCF, an unknown family, or a base that leads back to itself.
     """
     seen: list[Path] = []
     while True:
+        if path.suffix.lower() in XML:
+            remedy = "is no design; hyperleg import makes one of a URDF or MJCF and its motors"
+            raise InputError(given_path(path), "", None, remedy)
         data = read_yaml(path)
         if "axes" in data:
             remedy = "belongs to a sweep, not to a design; hyperleg sweep run takes this file"
-            raise InputError(short_name(path), "axes", None, remedy)
+            raise InputError(given_path(path), "axes", None, remedy)
         family = data.get("family")
         if family is not None and family not in FAMILIES:
             remedy = f"expects one of {', '.join(FAMILIES)}"
-            raise InputError(short_name(path), "family", family, remedy)
+            raise InputError(given_path(path), "family", family, remedy)
         if family or not isinstance(data.get("base"), str) or path.resolve() in seen:
             return family or FAMILIES[0]
         seen.append(path.resolve())
@@ -152,7 +160,7 @@ def family_of(path: Path) -> str:
 
 
 def _read(path: Path, seen: tuple[Path, ...] = ()) -> TreeDesign:
-    data, where = with_motor_paths(read_yaml(path), path.parent), short_name(path)
+    data, where = with_motor_paths(read_yaml(path), path.parent), given_path(path)
     if path.resolve() in seen:
         raise InputError(where, "base", data.get("base"), "leads back to itself")
     name = str(data.get("name", re.sub(r"[^A-Za-z0-9_.-]+", "_", path.stem)))

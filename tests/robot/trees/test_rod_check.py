@@ -33,10 +33,16 @@ def with_rod(**fields):
         ({"crank_end": [0, 0, -0.05]}, "crank_end = [0.0, 0.0, -0.05]: lies on the crank's axis"),
         ({"crank_end": [0, 0.1, -0.05]}, "crank_end = [0.0, 0.1, -0.05]: lies on the crank's axis"),
         ({"crank_end": [-0.04, 0, -0.2]}, "rod_end = [-0.04, 0.0, 0.0]: is the place of crank_end"),
-        ({"crank_end": [0, 0, -0.1], "rod_end": [0, 0, -0.1]}, "crank_end = [0.0, 0.0, -0.1]: is in"),
+        (
+            {"crank_end": [0, 0, -0.1], "rod_end": [0, 0, -0.1]},
+            "crank_end = [0.0, 0.0, -0.1]: is in",
+        ),
         ({"axis": [0, 0, 1]}, "axis = [0.0, 0.0, 1.0]: is not across crank and rod"),
         ({"axis": [1, 0, 0]}, "crank_end = [-0.04, 0.0, -0.05]: lies on the crank's axis"),
-        ({"end": "thigh"}, "end = 'thigh': no joint moves it against the carrier thigh; the links "),
+        (
+            {"end": "thigh"},
+            "end = 'thigh': no joint moves it against the carrier thigh; the links ",
+        ),
         ({"end": "base"}, "the links behind joints of thigh are shank"),
         ({"carrier": "shank"}, "no joint lies behind the carrier shank"),
     ],
@@ -50,7 +56,9 @@ def test_the_field_that_is_wrong_is_named(fields, words):
 
 def test_a_rod_that_points_at_its_joint_does_not_turn_it():
     """The knee lies on the line from crank_end to rod_end, 0.2 m below the hip."""
-    with pytest.raises(InputError, match=r"rods\.knee: does not turn the joint knee in the default"):
+    with pytest.raises(
+        InputError, match=r"rods\.knee: does not turn the joint knee in the default"
+    ):
         with_rod(rod_end=[0.02, 0, -0.075])
 
 
