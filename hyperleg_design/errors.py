@@ -113,6 +113,11 @@ def meant(name: str, known: Iterable[str], otherwise: str = "") -> str:
     """
     names = list(known)
     near = difflib.get_close_matches(name[:100], names, n=1)
+    if alike := [each for each in names if each.lower() == name.lower()]:
+        near = alike
+    elif not near:
+        lower = {each.lower(): each for each in reversed(names)}
+        near = [lower[n] for n in difflib.get_close_matches(name[:100].lower(), lower, n=1)]
     if near:
         return f"did you mean {near[0]}?"
     return otherwise or f"there are {', '.join(names) or 'none'}"

@@ -11,6 +11,7 @@ from typing import Any
 
 import yaml
 
+from hyperleg_design import resources
 from hyperleg_design.errors import InputError, in_short
 
 MAX_DEPTH = 50
@@ -35,9 +36,9 @@ def read_yaml(path: Path) -> dict[str, Any]:
         text = path.read_text(encoding="utf-8")
         data = parse_yaml(text)
     except OSError as error:
-        raise InputError(short_name(path), "", None, f"cannot be read ({error.strerror})") from None
+        raise InputError(given_path(path), "", None, f"cannot be read ({error.strerror})") from None
     except UnicodeDecodeError:
-        raise InputError(short_name(path), "", None, "is not a text file in UTF-8") from None
+        raise InputError(given_path(path), "", None, "is not a text file in UTF-8") from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f", line {mark.line + 1}" if mark else ""
@@ -45,10 +46,10 @@ def read_yaml(path: Path) -> dict[str, Any]:
         if mark and "\t" in text[mark.index : mark.index + 1]:
             problem = "a tab stands where spaces must; indent with spaces"
         raise InputError(
-            f"{short_name(path)}{place}", "", None, f"is not YAML: {problem}"
+            f"{given_path(path)}{place}", "", None, f"is not YAML: {problem}"
         ) from None
     if not isinstance(data, dict):
-        raise InputError(short_name(path), "", data, "expects a mapping of sections")
+        raise InputError(given_path(path), "", data, "expects a mapping of sections")
     return data
 
 
@@ -57,7 +58,7 @@ def read_json(path: Path, where: str = "") -> Any:
 
     Args:
         path: of the file.
-        where: what errors call it; its short name by default.
+        where: what errors call it; its path as it was given by default.
 
     Returns:
         Its content.
@@ -69,11 +70,11 @@ def read_json(path: Path, where: str = "") -> Any:
         return json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(
-            where or short_name(path), "", None, f"cannot be read ({error.strerror})"
+            where or given_path(path), "", None, f"cannot be read ({error.strerror})"
         ) from None
     except (ValueError, RecursionError) as error:
         raise InputError(
-            where or short_name(path), "", None, f"is not JSON ({in_short(error, 80)})"
+            where or given_path(path), "", None, f"is not JSON ({in_short(error, 80)})"
         ) from None
 
 
@@ -140,8 +141,24 @@ class _Loader(_BASE):  # type: ignore[misc]
             ) from None
 
 
+def given_path(path: Path) -> str:
+    """Name a file in messages as its user gave it.
+
+    Args:
+        path: of the file.
+
+    Returns:
+        The path as it stands; of a shipped file, which users name without a path, folder and name.
+    """
+    if path.is_absolute():
+        for kind in resources.CONTENT:
+            if path.is_relative_to(resources.content_folder(kind)):
+                return short_name(path)
+    return str(path)
+
+
 def short_name(path: Path) -> str:
-    """Name a file by its folder and name, for messages.
+    """Name a file by its folder and name, for results that do not depend on where it lay.
 
     Args:
         path: of the file.

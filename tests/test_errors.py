@@ -104,4 +104,6 @@ def test_a_name_that_does_not_exist_is_answered_by_the_nearest_or_by_all():
     assert meant("toe_mas", ["motors", "toe_mass"]) == "did you mean toe_mass?"
     assert meant("zzz", ["motors", "toe_mass"]) == "there are motors, toe_mass"
     assert meant("zzz", []) == "there are none"
+    assert meant("ri70", ["RI60", "RI70", "ri7"]) == "did you mean RI70?"
+    assert meant("TOEMASS", ["motors", "toe_mass"]) == "did you mean toe_mass?"
     assert meant("zzz", ["motors"], "ask") == "ask"

@@ -7,8 +7,16 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import MAX_DEPTH, parse_yaml, read_yaml, short_name, summary_line
+from hyperleg_design.reading import (
+    MAX_DEPTH,
+    given_path,
+    parse_yaml,
+    read_yaml,
+    short_name,
+    summary_line,
+)
 
 
 def test_a_mapping_is_read(write):
@@ -78,6 +86,20 @@ def test_any_bytes_are_read_or_refused(tmp_path_factory, content):
         assert isinstance(read_yaml(path), dict)
     except InputError:
         return
+
+
+def test_messages_name_a_file_as_it_was_given():
+    for path in (
+        "results/bad/a.yaml",
+        "/work/results/bad/a.yaml",
+        "a.yaml",
+        "../descriptions/a.yaml",
+    ):
+        assert given_path(Path(path)) == path
+        with pytest.raises(InputError, match=f"^{path}: cannot be read"):
+            read_yaml(Path(path))
+    assert given_path(resources.find("descriptions", "hyperleg")) == "descriptions/hyperleg.yaml"
+    assert given_path(Path("descriptions/hyperleg.yaml")) == "descriptions/hyperleg.yaml"
 
 
 def test_short_name():

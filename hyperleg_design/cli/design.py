@@ -136,6 +136,7 @@ class Import(Printing):
 
     def run(self) -> None:
         """Import the file, and print where its limits contradict the motors."""
+        from hyperleg_design.robot.assumed_posture import assumed_posture, posture_line
         from hyperleg_design.robot.checks.finding import finding_lines
         from hyperleg_design.robot.importing import base_line, import_robot, write_imported
 
@@ -149,6 +150,7 @@ class Import(Printing):
                     "file": None if self.out is None else str(self.out),
                     "trunk": {"link": design.trunk.link, "motion": design.trunk.motion},
                     "joints": list(design.joint_sections),
+                    "assumed_default_deg": assumed_posture(design),
                     "findings": [vars(finding) for finding in findings],
                 }
             )
@@ -156,6 +158,8 @@ class Import(Printing):
         written = "" if self.out is None else f" -> {self.out}"
         print(f"{design.name}: {len(design.joint_sections)} joints{written}")
         print(base_line(design))
+        if line := posture_line(design):
+            print(line)
         for line in finding_lines(findings):
             print(line)
         if not findings:

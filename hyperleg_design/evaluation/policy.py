@@ -18,7 +18,7 @@ import numpy as np
 
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.evaluation.shipped import find_policy
-from hyperleg_design.reading import short_name
+from hyperleg_design.reading import given_path, short_name
 from hyperleg_design.robot.load import robot_from_mapping
 from hyperleg_design.simulation.layout import layout_of
 from hyperleg_design.simulation.policy_file import INPUT, OUTPUT, POLICY_FORMAT
@@ -91,7 +91,7 @@ def load_policy(name: str | Path) -> OnnxPolicy:
         InputError: missing, truncated or foreign file, or metadata that does not fit its graph.
     """
     path = find_policy(name)
-    where = short_name(path)
+    where = given_path(path)
     try:
         content = path.read_bytes()
     except OSError as error:

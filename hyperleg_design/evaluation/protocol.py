@@ -15,7 +15,7 @@ import numpy as np
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.protocols.course import course_length
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 from hyperleg_design.robot.parameters import fields as parameter_fields
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.fields import number
@@ -227,7 +227,7 @@ def load_protocol(name: str | Path) -> Protocol:
         InputError: names file, field, value and remedy.
     """
     path = resources.find_sim("protocol", name)
-    return protocol_from_mapping(read_yaml(path), short_name(path))
+    return protocol_from_mapping(read_yaml(path), given_path(path))
 
 
 def protocol_from_mapping(data: Mapping[str, Any], where: str) -> Protocol:

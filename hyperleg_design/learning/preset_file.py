@@ -19,7 +19,7 @@ from hyperleg_design.learning.preset import (
     Stage,
     WarmStart,
 )
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.entries import (
     check_keys,
@@ -48,7 +48,7 @@ def load_preset(name: str | Path) -> Preset:
         InputError: names file, field, value and remedy.
     """
     path = resources.find_sim("preset", name)
-    return preset_from_mapping(_with_base(read_yaml(path), short_name(path)), short_name(path))
+    return preset_from_mapping(_with_base(read_yaml(path), given_path(path)), given_path(path))
 
 
 def _with_base(
@@ -66,7 +66,7 @@ def _with_base(
         path = resources.find_sim("preset", base)
     except InputError as error:
         raise InputError(where, "base", base, error.remedy) from None
-    below = _with_base(read_yaml(path), short_name(path), (*before, base))
+    below = _with_base(read_yaml(path), given_path(path), (*before, base))
     merged = {key: value for key, value in below.items() if key not in OWN}
     for key, value in data.items():
         old = merged.get(key)

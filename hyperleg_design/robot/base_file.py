@@ -7,7 +7,7 @@ from typing import Any
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError, meant
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 
 WHOLE = ("family", "pelvis")
 """Sections by which a file holds a design that has no base."""
@@ -37,7 +37,7 @@ def base_file(path: Path, name: Any) -> Path:
                 return place
     except OSError as error:  # a name too long, a folder closed to us
         remedy = f"cannot be read ({error.strerror})"
-        raise InputError(short_name(path), "base", name, remedy) from None
+        raise InputError(given_path(path), "base", name, remedy) from None
     if text in shipped:
         return resources.find("descriptions", text)
     beside = [file for file in sorted(path.parent.glob("*.yaml")) if file != path]
@@ -46,7 +46,7 @@ def base_file(path: Path, name: Any) -> Path:
     if is_path:
         reason += ", neither from the folder of this file nor from that of the command"
     remedy = f"{reason}; {meant(Path(text).stem, known)}"
-    raise InputError(short_name(path), "base", name, remedy)
+    raise InputError(given_path(path), "base", name, remedy)
 
 
 def _holds_design(path: Path, depth: int = 8) -> bool:

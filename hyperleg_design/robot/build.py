@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from hyperleg_design import provenance, resources
+from hyperleg_design.reading import short_name
 from hyperleg_design.robot.description import TEMPLATE, tree_yaml, urdf
 from hyperleg_design.robot.kinematics import dimensions
 from hyperleg_design.robot.kinematics.tree import build_tree
@@ -184,7 +185,7 @@ def _manifest(design: RobotDesign, files: dict[str, bytes]) -> dict[str, Any]:
     return {
         "design": design.name,
         "variant": design.variant,
-        "source": design.source,
+        "source": short_name(Path(design.source)) if design.source else "",
         "total_mass": float(dimensions.total_mass(design)),
         "leg_mass": float(dimensions.limb_mass(design)),
         "versions": provenance.versions(),

@@ -10,18 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from hyperleg_design.errors import InputError, in_short
-from hyperleg_design.reading import short_name
+from hyperleg_design.errors import InputError
+from hyperleg_design.reading import given_path
+from hyperleg_design.robot.checks.check_units import WORLD, check_ends, check_step
 from hyperleg_design.robot.checks.check_urdf import check_urdf
+from hyperleg_design.robot.checks.finding import Finding
+from hyperleg_design.robot.checks.mesh_files import WITHOUT, missing_meshes
 from hyperleg_design.robot.checks.urdf_xml import parse_xml
+from hyperleg_design.robot.mjcf_meshes import compiled
 
-MOST_RADIANS = 4 * math.pi + 1e-6
-"""End of a range past which it is taken for degrees [rad]."""
-LARGEST_STEP = 5.0
-"""Distance between joints past which it is taken for millimetres [m]."""
 MOVING = ("revolute", "continuous")
-WORLD = "world"
-"""Root link by which a URDF says that its robot is fixed to the ground."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +82,7 @@ def read_robot(path: str | Path, *, meshes: bool = True) -> FileRobot:
 
     Args:
         path: the file.
-        meshes: whether the meshes that a URDF names must be there.
+        meshes: whether the meshes that the file names must be there.
 
     Returns:
         Its links and joints, with the limits that the file states.
@@ -95,28 +93,34 @@ def read_robot(path: str | Path, *, meshes: bool = True) -> FileRobot:
     """
     path = Path(path)
     root, findings = parse_xml(path)
-    where = short_name(path)
+    where = given_path(path)
     if root is None:
         raise InputError(where, findings[0].place, None, findings[0].message)
     if root.tag == "robot":
         robot = _urdf(path, root, where, meshes)
     elif root.tag == "mujoco":
-        robot = _mjcf(path, where)
+        robot = _mjcf(path, where, meshes)
+        _check_units(robot)
     else:
         remedy = "expects a URDF (<robot>) or an MJCF (<mujoco>)"
         if root.tag == "sdf":
             remedy = "is SDF, which is not read; convert it to URDF or MJCF first"
         raise InputError(where, f"<{root.tag}>", None, remedy)
-    for name, joint in robot.joints.items():
-        step = float(np.linalg.norm(joint.position))
-        if step > LARGEST_STEP:
-            remedy = f"m from {joint.parent}: looks like millimetres; URDF and MJCF use metres"
-            raise InputError(where, f"joint {name}", round(step, 3), remedy)
-        ends = [abs(e) for e in (joint.lower, joint.upper)]
-        if joint.kind == "revolute" and max(ends) > MOST_RADIANS:
-            remedy = "is the end of its range: looks like degrees; a URDF uses radians"
-            raise InputError(where, f"joint {name}", max(ends), remedy)
     return robot
+
+
+def _check_units(robot: FileRobot) -> None:
+    """Refuse what looks like millimetres or degrees; `check_urdf` does so for a URDF."""
+    for name, joint in robot.joints.items():
+        findings = check_step(f"joint {name}", joint.parent, joint.position)
+        if joint.kind == "revolute":
+            findings += check_ends(f"joint {name}", joint.lower, joint.upper)
+        for finding in findings:
+            raise InputError(robot.source, finding.place, None, _text(finding))
+
+
+def _text(finding: Finding) -> str:
+    return f"{finding.message}; {finding.remedy}"
 
 
 def fit_name(name: str) -> str:
@@ -133,12 +137,12 @@ def fit_name(name: str) -> str:
 
 
 def _urdf(path: Path, root: Any, where: str, meshes: bool) -> FileRobot:
-    for finding in check_urdf(path):
-        if finding.severity == "error":
-            raise InputError(where, finding.place, None, f"{finding.message}; {finding.remedy}")
-    if meshes:
-        for mesh in root.iter("mesh"):
-            _require_mesh(str(mesh.get("filename", "")), path, where)
+    errors = [f for f in check_urdf(path, meshes=False) if f.severity == "error"]
+    if errors:
+        rest = f"; hyperleg check {path} lists all {len(errors)} errors" if errors[1:] else ""
+        raise InputError(where, errors[0].place, None, _text(errors[0]) + rest)
+    if meshes and (missing := missing_meshes(root, path)):
+        raise InputError(where, "<mesh filename>", missing[0], f"is missing; {WITHOUT}")
     links = {fit_name(e.get("name")): _urdf_link(e) for e in root.findall("link")}
     joints = {fit_name(e.get("name")): _urdf_joint(e) for e in root.findall("joint")}
     for name, joint in list(joints.items()):
@@ -148,25 +152,6 @@ def _urdf(path: Path, root: Any, where: str, meshes: bool) -> FileRobot:
     (base,) = [name for name in links if name not in carried]
     floating = base != WORLD
     return FileRobot(fit_name(root.get("name", "robot")), where, base, floating, links, joints)
-
-
-def _require_mesh(name: str, path: Path, where: str) -> None:
-    """Whether a mesh is there; `package://NAME/...` is looked for in the folders above the file."""
-    plain = re.sub(r"^(package|file|model)://", "", name)
-    package = name.startswith(("package://", "model://"))
-    places = [Path(plain)] if plain.startswith("/") and not package else []
-    for folder in path.resolve().parents:
-        places += [folder / plain]
-        if package:
-            places += [folder / plain.split("/", 1)[-1]]
-    if not any(place.is_file() for place in places):
-        raise InputError(
-            where,
-            "<mesh filename>",
-            name,
-            "is missing; put it where the file says, or import with --no-meshes (drawings are not "
-            "taken over in any case)",
-        )
 
 
 def _numbers(element: Any, key: str, default: str) -> np.ndarray:
@@ -227,14 +212,10 @@ def _rotation(turn: np.ndarray) -> np.ndarray:
     return turned(np.rad2deg(turn))
 
 
-def _mjcf(path: Path, where: str) -> FileRobot:
+def _mjcf(path: Path, where: str, meshes: bool) -> FileRobot:
     import mujoco
 
-    try:
-        model = mujoco.MjModel.from_xml_path(str(path))
-    except (ValueError, RuntimeError) as error:
-        remedy = f"MuJoCo does not compile it: {in_short(error, 200)}"
-        raise InputError(where, "<mujoco>", None, remedy) from None
+    model = compiled(path, where, meshes=meshes)
     first = [b for b in range(1, model.nbody) if model.body_parentid[b] == 0]
     free = [b for b in first if model.body_jntnum[b] and model.jnt_type[model.body_jntadr[b]] == 0]
     if len(free) > 1 or (free and len(first) > 1 and _moves(model, first, free[0])):

@@ -18,7 +18,7 @@ from typing_extensions import override
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import parse_yaml, read_yaml, short_name
+from hyperleg_design.reading import given_path, parse_yaml, read_yaml
 from hyperleg_design.robot.ablation import ablate, states
 from hyperleg_design.robot.base_file import base_file
 from hyperleg_design.robot.checks.consistency import check_design
@@ -130,7 +130,7 @@ def changed(
     """
     for overlay in overlays:
         path = overlay_file(overlay)
-        design = _overlaid(design, read_yaml(path), short_name(path))
+        design = _overlaid(design, read_yaml(path), given_path(path))
     chosen = parse_overrides(overrides)
     return design.with_values(chosen, "--set") if chosen else design
 
@@ -180,7 +180,7 @@ def design_from_mapping(data: Mapping[str, Any], where: str) -> Design:
 def _read(path: Path, seen: tuple[Path, ...] = ()) -> tuple[Design, str | None]:
     """Design of a file before ablation, and the variant that the file asks for."""
     data = with_motor_paths(read_yaml(path), path.parent)
-    where = short_name(path)
+    where = given_path(path)
     if path.resolve() in seen:
         raise InputError(where, "base", data.get("base"), "leads back to itself")
     if data.get("family", "hyperleg") != "hyperleg":

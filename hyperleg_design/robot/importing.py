@@ -23,8 +23,9 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError, OutputError
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml, short_name
 from hyperleg_design.robot import transmission
+from hyperleg_design.robot.assumed_posture import NEAREST, nearest_to_zero
 from hyperleg_design.robot.build import design_yaml
 from hyperleg_design.robot.checks.check_housing import check_housing
 from hyperleg_design.robot.checks.finding import Finding
@@ -34,13 +35,11 @@ from hyperleg_design.robot.models import leg_reflected_inertia
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.entries import check_keys
 from hyperleg_design.robot.parameters.motor_paths import with_motor_paths
+from hyperleg_design.robot.placeholders import placeholders, real_inertia
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 from hyperleg_design.robot.trees.tree_load import tree_design_from_mapping
 from hyperleg_design.writing import write_text
 
-DUMMY_INERTIA = 1e-5
-"""Moment of inertia up to which a link is a placeholder, as root links of URDFs often are, and gets
-the moments of a ball where it has those of no body [kg m^2]."""
 AGREES = 0.05
 """Relative difference up to which a limit of the file agrees with the motors [-]."""
 HEAD = "# Written by `hyperleg import`, which replaces this file until it is edited: {}\n"
@@ -72,17 +71,17 @@ def import_robot(
     Args:
         path: URDF or MJCF.
         actuation: YAML file, see the module.
-        meshes: whether the meshes that a URDF names must be there.
+        meshes: whether the meshes that the file names must be there.
 
     Returns:
-        The design, and what `lint` and `check_housing` find.
+        The design, and what `lint`, `placeholders` and `check_housing` find.
 
     Raises:
         InputError: the file is no robot (see `described_file.read_robot`), a joint without a motor,
             a pattern that matches nothing, or actuation that does not fit.
     """
     motors = Path(actuation)
-    data, where = with_motor_paths(read_yaml(motors), motors.parent), short_name(motors)
+    data, where = with_motor_paths(read_yaml(motors), motors.parent), given_path(motors)
     robot = read_robot(path, meshes=meshes)
     mapping = design_mapping(robot, data, where)
     try:
@@ -91,7 +90,7 @@ def import_robot(
         if not error.field.startswith("links."):
             raise
         raise InputError(robot.source, error.field, error.value, error.remedy) from None
-    return design, [*lint(robot, design), *check_housing(design)]
+    return design, [*lint(robot, design), *placeholders(robot), *check_housing(design)]
 
 
 def write_imported(design: TreeDesign, out: str | Path) -> Path:
@@ -153,6 +152,10 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
     """
     check_keys(data, where, "", (), tuple(KEYS))
     moving = [n for n, j in robot.joints.items() if j.kind != "fixed"]
+    if not moving:
+        raise InputError(
+            robot.source, "joints", None, "has no joint that moves, so nothing to drive"
+        )
     lock = data.get("lock") or []
     if not isinstance(lock, list):
         raise InputError(where, "lock", lock, "expects a list of joints or patterns")
@@ -167,7 +170,7 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
     for pattern, held in _section(data, "actuators", where).items():
         own = pattern in _section(data, "transmission", where)
         own = own or pattern in _section(data, "rods", where)
-        names = [pattern] if own else _matching(pattern, free, where, "actuators")
+        names = [pattern] if own else _driven(pattern, robot, locked, where)
         _fields(held, where, f"actuators.{pattern}", "motor: RI70, gear: 9")
         for name in names:
             actuators[name] = _housed(robot, name, locked, held) | dict(held)
@@ -176,9 +179,8 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
         more = f", nor have {', '.join(still[1:])}" if still[1:] else ""
         remedy = f"has no motor{more}; name one under actuators, or list the joint under lock"
         raise InputError(where, f"joints.{still[0]}", None, remedy)
-    joints = {
-        name: _joint(joint, robot.source, name in locked) for name, joint in robot.joints.items()
-    }
+    source = short_name(Path(robot.source))
+    joints = {name: _joint(joint, source, name in locked) for name, joint in robot.joints.items()}
     for pattern, held in _section(data, "joints", where).items():
         for name in _matching(pattern, list(robot.joints), where, "joints"):
             joints[name] |= _fields(held, where, f"joints.{pattern}", "stiffness: 50")
@@ -192,14 +194,14 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
         "trunk": trunk | dict(_section(data, "trunk", where)),
         "links": {
             name: {
-                "mass": _leaf(link.mass, robot.source),
-                "com": _leaf(link.com.tolist(), robot.source),
+                "mass": _leaf(link.mass, source),
+                "com": _leaf(link.com.tolist(), source),
                 "inertia": _leaf(
                     [
-                        float(_real(link.inertia)[i])
+                        float(real_inertia(link)[i])
                         for i in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
                     ],
-                    robot.source,
+                    source,
                 ),
             }
             for name, link in robot.links.items()
@@ -241,8 +243,8 @@ def _pads(robot: FileRobot, given: Mapping[str, Any], where: str) -> dict[str, A
             for index, (place, radius) in enumerate(own):
                 mapping[f"{link}_{index}"] = {
                     "link": link,
-                    "position": _leaf(place.tolist(), robot.source),
-                    "radius": _leaf(radius, robot.source),
+                    "position": _leaf(place.tolist(), short_name(Path(robot.source))),
+                    "radius": _leaf(radius, short_name(Path(robot.source))),
                 } | dict(held or {})
     return mapping
 
@@ -256,7 +258,10 @@ def _housed(
     if name not in robot.joints:
         return {"housed_in": robot.root}
     link, place = housing(robot, name, locked)
-    return {"housed_in": link, "place": _leaf(place.tolist(), robot.source, "derived")}
+    return {
+        "housed_in": link,
+        "place": _leaf(place.tolist(), short_name(Path(robot.source)), "derived"),
+    }
 
 
 def _section(data: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:
@@ -273,6 +278,25 @@ def _fields(held: Any, where: str, place: str, example: str) -> Mapping[str, Any
     return held
 
 
+def _driven(pattern: str, robot: FileRobot, locked: set[str], where: str) -> list[str]:
+    """Joints that a motor of this name or pattern drives.
+
+    Raises:
+        InputError: there are none, or they do not move.
+    """
+    joints = robot.joints
+    still = [name for name, joint in joints.items() if joint.kind == "fixed" or name in locked]
+    names = [name for name in joints if name not in still]
+    held = [name for name in still if fnmatchcase(name, pattern)]
+    if held and not any(fnmatchcase(name, pattern) for name in names):
+        why = f"is fixed in {robot.source}; leave out its motor"
+        if held[0] in locked:
+            why = "is under lock, so no motor drives it; leave out one of the two"
+        who = "" if held[0] == pattern else f"{held[0]} "
+        raise InputError(where, f"actuators.{pattern}", None, who + why)
+    return _matching(pattern, names, where, "actuators")
+
+
 def _matching(pattern: str, names: list[str], where: str, place: str) -> list[str]:
     matching = [name for name in names if fnmatchcase(name, pattern)]
     if not matching:
@@ -280,15 +304,6 @@ def _matching(pattern: str, names: list[str], where: str, place: str) -> list[st
         remedy = parameters.unknown(pattern, names, kind)
         raise InputError(where, f"{place}.{pattern}", None, remedy)
     return matching
-
-
-def _real(inertia: np.ndarray) -> np.ndarray:
-    """The inertia of a link; of a placeholder with moments of no body, a ball's, `(3, 3)`."""
-    low, middle, high = np.linalg.eigvalsh(inertia)
-    real = low > 0 and high <= (low + middle) * (1 + 1e-6)
-    if real or not 0 < high < DUMMY_INERTIA:
-        return inertia
-    return float(high) * np.eye(3)
 
 
 def _leaf(value: Any, source: str, label: str = "vendor") -> dict[str, Any]:
@@ -306,12 +321,12 @@ def _joint(joint: FileJoint, source: str, locked: bool) -> dict[str, Any]:
     }
     if fixed:
         return section
-    lower, upper = float(np.rad2deg(joint.lower)), float(np.rad2deg(joint.upper))
+    lower, upper = (round(float(np.rad2deg(end)), 9) for end in (joint.lower, joint.upper))
     return section | {
         "axis": _leaf(joint.axis.tolist(), source),
         "lower_deg": _leaf(lower, source),
         "upper_deg": _leaf(upper, source),
-        "default_deg": float(np.clip(0.0, lower, upper)),
+        "default_deg": _leaf(nearest_to_zero(lower, upper), NEAREST, "assumed"),
         "coulomb": _leaf(joint.coulomb, source),
         "viscous": _leaf(joint.viscous, source),
     }

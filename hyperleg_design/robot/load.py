@@ -11,7 +11,7 @@ from typing import Any, cast
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 from hyperleg_design.robot.base_file import base_file
 from hyperleg_design.robot.design import (
     Design,
@@ -29,6 +29,9 @@ from hyperleg_design.robot.trees.tree_load import FAMILY, tree_design_from_mappi
 
 FAMILIES = (Design.family, FAMILY)
 """What `family:` may say; a file without it is of the first one."""
+
+XML = (".urdf", ".xml", ".mjcf", ".xacro")
+"""Endings of files that describe robots, but are no designs."""
 
 
 def load_robot(
@@ -87,7 +90,7 @@ def changed_robot(
     tree = cast("TreeDesign", design)
     for overlay in overlays:
         place = overlay_file(overlay)
-        tree = _overlaid(tree, read_yaml(place), short_name(place))
+        tree = _overlaid(tree, read_yaml(place), given_path(place))
     chosen = parse_overrides(overrides)
     return tree.with_values(chosen, "--set") if chosen else tree
 
@@ -136,18 +139,21 @@ def family_of(path: Path) -> str:
         One of `FAMILIES`.
 
     Raises:
-        InputError: an unknown family, or a base that leads back to itself.
+        InputError: a URDF or MJCF, an unknown family, or a base that leads back to itself.
     """
     seen: list[Path] = []
     while True:
+        if path.suffix.lower() in XML:
+            remedy = "is no design; hyperleg import makes one of a URDF or MJCF and its motors"
+            raise InputError(given_path(path), "", None, remedy)
         data = read_yaml(path)
         if "axes" in data:
             remedy = "belongs to a sweep, not to a design; hyperleg sweep run takes this file"
-            raise InputError(short_name(path), "axes", None, remedy)
+            raise InputError(given_path(path), "axes", None, remedy)
         family = data.get("family")
         if family is not None and family not in FAMILIES:
             remedy = f"expects one of {', '.join(FAMILIES)}"
-            raise InputError(short_name(path), "family", family, remedy)
+            raise InputError(given_path(path), "family", family, remedy)
         if family or not isinstance(data.get("base"), str) or path.resolve() in seen:
             return family or FAMILIES[0]
         seen.append(path.resolve())
@@ -155,7 +161,7 @@ def family_of(path: Path) -> str:
 
 
 def _read(path: Path, seen: tuple[Path, ...] = ()) -> TreeDesign:
-    data, where = with_motor_paths(read_yaml(path), path.parent), short_name(path)
+    data, where = with_motor_paths(read_yaml(path), path.parent), given_path(path)
     if path.resolve() in seen:
         raise InputError(where, "base", data.get("base"), "leads back to itself")
     name = str(data.get("name", re.sub(r"[^A-Za-z0-9_.-]+", "_", path.stem)))

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.entries import check_keys
 from hyperleg_design.robot.parameters.fields import Rule
@@ -229,7 +229,7 @@ def load_motor(path: Path) -> Motor:
         InputError: names file, field, value and remedy.
     """
     data = read_yaml(path)
-    where = short_name(path)
+    where = given_path(path)
     optional = ("name", "vendor", "product", "description", "presets")
     check_keys(data, where, "", ("kind", "constants", "convention"), optional)
     if data.get("name", path.stem) != path.stem:

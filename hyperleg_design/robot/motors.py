@@ -173,11 +173,12 @@ def _of_file(name: str, where: str, field: str) -> Motor:
     path = Path(name)
     if not path.is_file():
         raise InputError(where, field, name, "no such motor file; give a path that exists")
-    return _motor_at(path.resolve(), path.stat().st_mtime_ns)
+    return _motor_at(path, path.resolve(), path.stat().st_mtime_ns)
 
 
 @cache
-def _motor_at(path: Path, written: int) -> Motor:
+def _motor_at(path: Path, place: Path, written: int) -> Motor:
+    """The motor of a file; errors name the path as it was given."""
     return load_motor(path)
 
 

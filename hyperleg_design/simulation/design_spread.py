@@ -16,7 +16,7 @@ import numpy as np
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 from hyperleg_design.robot.names import LAYOUTS
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.simulation.design_observation import DesignRanges, design_ranges
@@ -158,7 +158,7 @@ def load_design_spread(name: str | Path) -> DesignSpread:
         InputError: names file, field, value and remedy.
     """
     path = resources.find_sim("designs", name)
-    return design_spread(read_yaml(path), short_name(path))
+    return design_spread(read_yaml(path), given_path(path))
 
 
 def design_spread(data: Mapping[str, Any], where: str) -> DesignSpread:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 from hyperleg_design.robot.mjcf import TIME_STEP
 from hyperleg_design.robot.names import SIDES
 from hyperleg_design.robot.parameters import fields as parameter_fields
@@ -242,7 +242,7 @@ def load_task(name: str | Path) -> Task:
         InputError: names file, field, value and remedy.
     """
     path = resources.find_sim("task", name)
-    return task_from_mapping(read_yaml(path), short_name(path))
+    return task_from_mapping(read_yaml(path), given_path(path))
 
 
 @functools.cache

@@ -26,7 +26,7 @@ from typing import Any
 
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 from hyperleg_design.robot.design import SPRING, Design
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.names import LAYOUTS, PASSIVE
@@ -75,7 +75,7 @@ def load_sweep(name: str | Path, *, overrides: Mapping[str, Any] | None = None) 
     """
     path = resources.find("sweeps", name)
     data = _from_here(read_yaml(path), path.parent)
-    return sweep_from_mapping(data, short_name(path), path.stem, overrides=overrides)
+    return sweep_from_mapping(data, given_path(path), path.stem, overrides=overrides)
 
 
 def _from_here(data: Mapping[str, Any], folder: Path) -> dict[str, Any]:

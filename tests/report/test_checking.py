@@ -39,7 +39,7 @@ def test_nothing_to_check_is_bad_input():
 def test_every_file_is_checked_though_others_cannot_be(tmp_path):
     data = yaml.safe_load(resources.find("descriptions", "parallel_ankle").read_text())
     rod = next(iter(data["rods"].values()))
-    rod["crank_end"] = rod["crank_axis"]
+    rod["crank_end"] = [-0.001, 0.045, -0.12]  # a crank of 1 mm beside a lever of 50 mm
     short = tmp_path / "short.yaml"
     short.write_text(yaml.safe_dump(data))
     paths = ["nothing-here", str(tmp_path), str(short), "hyperleg"]

@@ -133,6 +133,11 @@ BROKEN = {
         '<visual><geometry><mesh filename="package://no/such.stl"/></geometry></visual></link>',
         ["package://no/such.stl", "missing", "--no-meshes"],
     ),
+    "mesh beside it": (
+        "</link>",
+        '<visual><geometry><mesh filename="thigh.stl"/></geometry></visual></link>',
+        ["thigh.stl", "missing", "--no-meshes"],
+    ),
     "no XML": ("</robot>", "", ["line"]),
 }
 
@@ -156,6 +161,18 @@ def test_broken_files_are_one_clear_error_and_nothing_is_written(case, tmp_path,
 
 
 @pytest.mark.parametrize(
+    "name", ["thigh.stl", "meshes/thigh.stl", "file:///gone/thigh.stl", "package://gone/thigh.stl"]
+)
+def test_meshes_may_be_missing_wherever_they_should_be(name, tmp_path, capsys):
+    path = tmp_path / "leg.urdf"
+    drawn = f'<visual><geometry><mesh filename="{name}"/></geometry></visual></link>'
+    path.write_text(urdf(leg()).replace("</link>", drawn, 1))
+    command = ["import", str(path), "--actuation", str(actuation(tmp_path / "motors.yaml"))]
+    assert main([*command, "--no-meshes"]) == 0
+    assert "leg: 2 joints" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
     ("data", "words"),
     [
         (
@@ -163,6 +180,14 @@ def test_broken_files_are_one_clear_error_and_nothing_is_written(case, tmp_path,
             ["joints.knee", "no motor; name one under actuators", "lock"],
         ),
         ({"actuators": LEG, "lock": ["elbow"]}, ["lock.elbow", "no such moving joint"]),
+        (
+            {"actuators": LEG, "lock": ["hip"]},
+            ["actuators.hip: is under lock, so no motor drives it"],
+        ),
+        (
+            {"actuators": {"h*": LEG["hip"], "knee": LEG["knee"]}, "lock": ["hip"]},
+            ["actuators.h*: hip is under lock"],
+        ),
         ({"actuators": LEG, "joints": {"elbow": {}}}, ["joints.elbow", "no such joint"]),
         ({"actuators": LEG, "lock": "hip"}, ["lock = 'hip'", "expects a list"]),
         ({"actuators": {"*": "RI70"}}, ["actuators.* = 'RI70'", "{motor: RI70, gear: 9}"]),
@@ -297,3 +322,25 @@ def test_pads_of_links_without_spheres(tmp_path):
     design, _ = import_robot(tmp_path / "hopper.urdf", actuation(tmp_path / "m.yaml", **motors))
     (pad,) = design.pad_sections.values()
     assert (list(pad.position), pad.radius) == ([0.0, 0.0, 0.0], 0.03)
+
+
+def test_the_first_error_says_where_the_others_are(tmp_path):
+    path = tmp_path / "leg.urdf"
+    path.write_text(urdf(leg()).replace('mass value="1.0"', 'mass value="-1.0"'))
+    with pytest.raises(InputError, match=rf"hyperleg check {path} lists all 3 errors"):
+        import_robot(path, actuation(tmp_path / "motors.yaml"))
+    path.write_text(urdf(leg()).replace('mass value="1.0"', 'mass value="-1.0"', 1))
+    with pytest.raises(InputError) as caught:
+        import_robot(path, actuation(tmp_path / "motors.yaml"))
+    assert "hyperleg check" not in str(caught.value)
+
+
+def test_a_joint_that_the_file_fixes_has_no_motor(tmp_path):
+    path = tmp_path / "leg.urdf"
+    path.write_text(urdf(leg()).replace('type="revolute"', 'type="fixed"', 1))
+    motors = actuation(tmp_path / "motors.yaml")
+    with pytest.raises(InputError, match=r"motors\.yaml: actuators\.hip: is fixed in .*leg\.urdf"):
+        import_robot(path, motors)
+    path.write_text(path.read_text().replace('type="revolute"', 'type="fixed"'))
+    with pytest.raises(InputError, match=r"leg\.urdf: joints: has no joint that moves"):
+        import_robot(path, motors)

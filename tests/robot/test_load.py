@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import pickle
 import shlex
 from pathlib import Path
@@ -12,6 +13,7 @@ import yaml
 
 from hyperleg_design.errors import InputError
 from hyperleg_design.robot import transmission
+from hyperleg_design.robot.build import build
 from hyperleg_design.robot.design import load_design
 from hyperleg_design.robot.load import design_argument, load_robot, robot_from_mapping
 from tests.robot.tree_files import leg
@@ -102,3 +104,40 @@ def test_a_set_file_that_is_not_there_is_named_as_one(design, tmp_path):
     for name, reason in (("nosuch.yaml", "no such file"), (tmp_path, "is a folder")):
         with pytest.raises(InputError, match=f"--set-file = '{name}': {reason}.*differ$"):
             load_robot(design, overlays=[name])
+
+
+@pytest.mark.parametrize("ending", [".urdf", ".xml", ".mjcf"])
+def test_a_file_that_import_takes_is_sent_there(ending, tmp_path):
+    path = tmp_path / f"bolt{ending}"
+    path.write_text("<robot name='bolt'/>")
+    with pytest.raises(InputError, match=rf"^{path}: is no design; hyperleg import makes one"):
+        load_robot(path)
+
+
+def test_errors_name_the_path_as_given_and_results_the_folder_alone(tmp_path, monkeypatch):
+    folder = tmp_path / "results" / "bad"
+    folder.mkdir(parents=True)
+    (folder / "a.yaml").write_text(yaml.safe_dump(leg().to_mapping()))
+    (folder / "heavy.yaml").write_text("links: {shank: {mass: -1}}")
+    (folder / "light.yaml").write_text("links: {shank: {mass: 0.5}}")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match=r"^results/bad/heavy\.yaml: links\.shank\.mass = -1"):
+        load_robot("results/bad/a.yaml", overlays=["results/bad/heavy.yaml"])
+    design = load_robot("results/bad/a.yaml").with_values(
+        {"links.shank.mass": 0.5}, "results/bad/light.yaml"
+    )
+    assert design.source == "results/bad/a.yaml"
+    assert design.origins["links.shank.mass"].source == "bad/light.yaml"
+    manifest = json.loads((build(design, tmp_path / "out") / "manifest.json").read_text())
+    assert manifest["source"] == "bad/a.yaml"
+
+
+def test_a_motor_named_by_a_path_is_blamed_by_it(tmp_path, monkeypatch):
+    (tmp_path / "deep" / "own").mkdir(parents=True)
+    (tmp_path / "deep" / "own" / "Mine.yaml").write_text("constants: {}\n")
+    design = leg().to_mapping()
+    design["actuators"]["knee"]["motor"] = "own/Mine.yaml"
+    (tmp_path / "deep" / "leg.yaml").write_text(yaml.safe_dump(design))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match=r"^deep/own/Mine\.yaml: "):
+        load_robot("deep/leg.yaml")

@@ -133,7 +133,7 @@ def test_a_broken_catalogue_names_its_file(write, tmp_path, monkeypatch):
 def test_a_design_with_a_broken_motor_names_the_motors_file(own_folder):
     broken = own_folder / "Broken.yaml"
     broken.write_text("kind: stepper\nconstants: {}\nconvention: {}\n")
-    with pytest.raises(InputError, match=r"^mine/Broken\.yaml: "):
+    with pytest.raises(InputError, match=rf"^{own_folder}/Broken\.yaml: "):
         load_design("hyperleg", overrides={"actuators.knee.motor": str(broken)})
 
 

@@ -13,7 +13,7 @@ from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.evaluation.measures import T_TEST, WALK
 from hyperleg_design.evaluation.result import arrivals_only
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.entries import (
     check_keys,
@@ -134,7 +134,7 @@ def load_plan(name: str | Path = "analysis_plan") -> AnalysisPlan:
         InputError: names file, field, value and remedy.
     """
     path = resources.find("sim", name, noun="analysis_plan")
-    return plan_from_mapping(read_yaml(path), short_name(path))
+    return plan_from_mapping(read_yaml(path), given_path(path))
 
 
 def plan_from_mapping(data: Mapping[str, Any], where: str) -> AnalysisPlan:

@@ -26,7 +26,7 @@ from hyperleg_design.gap.effects import effect
 from hyperleg_design.gap.effects.effect import Change
 from hyperleg_design.gap.model.design_subject import subject_of
 from hyperleg_design.gap.model.subject import Subject
-from hyperleg_design.reading import read_json, read_yaml, short_name
+from hyperleg_design.reading import given_path, read_json, read_yaml
 from hyperleg_design.robot.parameters.described import RobotDesign
 from hyperleg_design.robot.parameters.values import unknown
 from hyperleg_design.simulation.alteration import Alteration
@@ -121,7 +121,7 @@ def read_overlay(path: str | Path) -> Overlay:
         InputError: it cannot be read, or something in it is wrong.
     """
     path = Path(path)
-    return overlay_from_mapping(read_yaml(path), short_name(path))
+    return overlay_from_mapping(read_yaml(path), given_path(path))
 
 
 def overlay_from_mapping(content: Mapping[str, Any], where: str) -> Overlay:
@@ -194,7 +194,7 @@ def overlay_of_diagnosis(path: str | Path, robot: str = "") -> Overlay:
     """
     path = Path(path)
     path = path / "diagnosis.json" if path.is_dir() else path
-    where = short_name(path)
+    where = given_path(path)
     content = read_json(path)
     diagnosis = content if isinstance(content, dict) else {}
     if diagnosis.get("schema") != 1 or not isinstance(diagnosis.get("causes"), list):

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import read_json, short_name
+from hyperleg_design.reading import given_path, read_json
 
 SCHEMA = 1
 VERDICTS = ("explained", "ambiguous", "none", "unknown")
@@ -187,7 +187,7 @@ def read_diagnosis(path: str | Path) -> Diagnosis:
         InputError: it cannot be read, or is no diagnosis of this schema.
     """
     path = Path(path)
-    where = short_name(path)
+    where = given_path(path)
     content = read_json(path)
     schema = content.get("schema") if isinstance(content, dict) else None
     if schema != SCHEMA:

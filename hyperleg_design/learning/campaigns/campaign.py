@@ -8,7 +8,7 @@ from pathlib import Path
 from hyperleg_design import resources
 from hyperleg_design.errors import InputError
 from hyperleg_design.learning.preset_file import load_preset
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 from hyperleg_design.robot.load import load_robot
 from hyperleg_design.robot.parameters.entries import (
     check_keys,
@@ -78,7 +78,7 @@ def load_campaign(name: str | Path = "campaign") -> Campaign:
             not exist.
     """
     path = resources.find("sim", name, noun="campaign")
-    data, where = read_yaml(path), short_name(path)
+    data, where = read_yaml(path), given_path(path)
     check_keys(data, where, "", ("name", "preset", "groups"), ("processes",))
     processes = checked_whole_number(data.get("processes", 2), where, "processes", 1, 1000)
     groups = data["groups"]

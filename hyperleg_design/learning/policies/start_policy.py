@@ -17,6 +17,7 @@ import numpy as np
 from hyperleg_design.errors import InputError, in_short
 from hyperleg_design.learning.policies.fold_design import fold_design
 from hyperleg_design.learning.records.status import CRITIC, POLICY
+from hyperleg_design.reading import given_path
 from hyperleg_design.simulation.design_observation import RANGES, design_ranges
 from hyperleg_design.simulation.policy_file import CRITIC_FORMAT, POLICY_FORMAT
 
@@ -109,7 +110,7 @@ def read_start(path: str | Path, design: RobotDesign | None = None) -> StartPoli
     metadata, network, digest, modulation = _read_network(path, POLICY_FORMAT)
     numbers: dict[str, float] = {}
     if RANGES in metadata:
-        where = f"{path.parent.name}/{path.name}"
+        where = given_path(path)
         if design is None:
             raise InputError(
                 where,
@@ -170,7 +171,7 @@ def _read_network(
     import onnx
     from onnx import numpy_helper
 
-    where = f"{path.parent.name}/{path.name}"
+    where = given_path(path)
     try:
         content = path.read_bytes()
         model = onnx.load_from_string(content)

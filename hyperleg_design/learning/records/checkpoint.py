@@ -12,6 +12,7 @@ import numpy as np
 import torch
 
 from hyperleg_design.errors import InputError, in_short
+from hyperleg_design.reading import given_path
 from hyperleg_design.writing import write_bytes
 
 FORMAT = "hyperleg-checkpoint-1"
@@ -46,7 +47,7 @@ def load_checkpoint(path: Path) -> dict[str, Any]:
     Raises:
         InputError: missing, truncated, or no checkpoint.
     """
-    where = f"{path.parent.name}/{path.name}"
+    where = given_path(path)
     try:
         content = torch.load(path, map_location="cpu", weights_only=True)
     except FileNotFoundError:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import in_short
+from hyperleg_design.robot.checks.check_units import check_ends, check_step
 from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.checks.urdf_xml import parse_xml
 
@@ -50,7 +51,7 @@ def check_mjcf(source: str | Path) -> list[Finding]:
                 "correct what it names",
             )
         ]
-    findings = _model(model) + _starts(model)
+    findings = _model(model) + _units(model) + _starts(model)
     return sorted(findings, key=lambda f: f.severity != "error")
 
 
@@ -101,6 +102,21 @@ def _model(model: Any) -> list[Finding]:
             findings.append(
                 Finding("warning", place, "has no range", "add range= if the joint has stops")
             )
+    return findings
+
+
+def _units(model: Any) -> list[Finding]:
+    """Distances and ranges that look like millimetres and degrees, by the rules of a URDF's."""
+    import mujoco
+
+    findings = []
+    for body in range(1, model.nbody):
+        parent = model.body(int(model.body_parentid[body])).name
+        findings += check_step(f"body {model.body(body).name}", parent, model.body_pos[body])
+    for index in range(model.njnt):
+        if int(model.jnt_type[index]) == int(mujoco.mjtJoint.mjJNT_HINGE):
+            lower, upper = model.jnt_range[index]
+            findings += check_ends(f"joint {model.joint(index).name}", lower, upper)
     return findings
 
 

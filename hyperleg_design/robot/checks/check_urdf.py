@@ -12,18 +12,21 @@ from pathlib import Path
 from typing import Any
 
 from hyperleg_design.errors import in_short
+from hyperleg_design.robot.checks.check_units import check_step, check_units, step_of
 from hyperleg_design.robot.checks.check_urdf_joint import check_joint
 from hyperleg_design.robot.checks.check_urdf_link import check_link
 from hyperleg_design.robot.checks.check_urdf_mass import check_mass
 from hyperleg_design.robot.checks.finding import Finding
+from hyperleg_design.robot.checks.mesh_files import check_packages
 from hyperleg_design.robot.checks.urdf_xml import ends_of, numbers, parse_xml, place_of
 
 
-def check_urdf(source: str | Path) -> list[Finding]:
+def check_urdf(source: str | Path, *, meshes: bool = True) -> list[Finding]:
     """Everything wrong with a URDF.
 
     Args:
         source: a path, or the text itself.
+        meshes: whether to look for the meshes that a file names.
 
     Returns:
         Findings, errors first; empty where nothing is wrong.
@@ -51,13 +54,20 @@ def check_urdf(source: str | Path) -> list[Finding]:
         return [*findings, Finding("error", "<robot>", "has no links", "add at least one <link>")]
     findings += _tree(links, joints)
     carried = {end for joint in joints if joint.get("type") == "fixed" for end in ends_of(joint)}
+    is_text = isinstance(source, str) and source.lstrip().startswith("<")
+    drawn = Path(source) if meshes and not is_text else None
     for link in links:
-        findings += check_link(link, source, carried=link.get("name") in carried)
+        findings += check_link(link, drawn, carried=link.get("name") in carried)
     for joint in joints:
         findings += check_joint(joint, {j.get("name") for j in joints})
     findings += _weightless(links, joints)
+    if drawn is not None:
+        findings += check_packages(root, drawn)
+    units = [finding for joint in joints for finding in check_units(joint)]
     if not any(f.severity == "error" for f in findings):
-        findings += _loads(root)
+        far = any(f.severity == "error" for j in joints for f in check_step("", "", step_of(j)))
+        findings += _loads(root, metre=1000.0 if far else 1.0)
+    findings += units
     return sorted(findings, key=lambda f: f.severity != "error")
 
 
@@ -201,8 +211,10 @@ def _weightless(links: list[Any], joints: list[Any]) -> list[Finding]:
     ]
 
 
-def _loads(root: Any) -> list[Finding]:
-    """Whether Pinocchio, which analyses it, takes it, and whether its mass fits its size."""
+def _loads(root: Any, metre: float) -> list[Finding]:
+    """Whether Pinocchio, which analyses it, takes it, and whether its mass fits its size, where a
+    metre has this length in the file.
+    """
     import pinocchio
     from lxml import etree  # type: ignore[import-untyped]
 
@@ -217,4 +229,4 @@ def _loads(root: Any) -> list[Finding]:
                 "correct that element",
             )
         ]
-    return check_mass(model)
+    return check_mass(model, metre)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from hyperleg_design.robot.checks.check_units import MOST_RADIANS
 from hyperleg_design.robot.checks.finding import Finding
 from hyperleg_design.robot.checks.urdf_xml import check_origin, numbers, place_of
 
@@ -135,7 +136,10 @@ def _range(lower: float, upper: float, place: str, kind: str) -> list[Finding]:
                 "widen it, or make the joint fixed",
             )
         ]
-    if kind == "revolute" and max(abs(lower), abs(upper)) > 2 * math.pi + 1e-6:
+    end = max(abs(lower), abs(upper))
+    if kind == "revolute" and end > MOST_RADIANS:
+        return []  # an error of its unit
+    if kind == "revolute" and end > 2 * math.pi + 1e-6:
         return [
             Finding(
                 "warning",

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.robot.checks.finding import Finding
+from hyperleg_design.robot.checks.mesh_files import is_there
 from hyperleg_design.robot.checks.urdf_xml import check_origin, numbers, place_of
 
 SIZES = {
@@ -21,20 +22,41 @@ SIZES = {
 LARGEST_GYRATION = 5.0
 """Radius of gyration past which a robot's link looks like a mistake of unit [m]."""
 
+POINT = 1e-6
+"""Radius of gyration up to which an inertia is that of a point, and its numbers what rounding left
+of zero [m]."""
+FRAME = 1e-3
+"""Mass up to which a link that is fixed to another counts as a mere frame [kg]."""
+BOX = "a box of edges a, b, c has m (b^2 + c^2) / 12 about a"
 
-def check_link(link: Any, source: str | Path, *, carried: bool) -> list[Finding]:
+
+def is_point(mass: float, inertia: np.ndarray) -> bool:
+    """Whether an inertia is zero but for rounding, compared with the mass.
+
+    Args:
+        mass: of the link [kg].
+        inertia: about the centre of mass [kg m^2], of any shape.
+
+    Returns:
+        Whether no entry exceeds that of a body with the radius of gyration `POINT`.
+    """
+    return bool(np.all(np.abs(inertia) <= mass * POINT**2))
+
+
+def check_link(link: Any, source: str | Path | None, *, carried: bool) -> list[Finding]:
     """Check one link of a URDF.
 
     Args:
         link: the element.
-        source: file or text of the URDF, which says where meshes are.
+        source: file of the URDF, which says where meshes are; None leaves them out.
         carried: whether the link is fixed to another one, where a point without inertia does no
             harm.
 
     Returns:
         What is wrong with its mass, inertia, drawings and meshes.
     """
-    return [*_inertial(link, carried), *_drawings(link), *_meshes(link, source)]
+    meshes = [] if source is None else _meshes(link, source)
+    return [*_inertial(link, carried), *_drawings(link), *meshes]
 
 
 def _inertial(link: Any, carried: bool) -> list[Finding]:
@@ -92,27 +114,31 @@ def _tensor(values: np.ndarray, mass: float, place: str, carried: bool) -> list[
     xx, yy, zz, xy, xz, yz = values
     principal = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     shown = ", ".join(f"{v:.4g}" for v in principal)
-    if not np.any(values) and carried:
+    if is_point(mass, values):
         message = f"has a mass of {mass:g} kg but no inertia, as a point has"
-        return [Finding("warning", place, message, "leave out the inertial of a mere frame")]
+        remedy = f"give it that of its body ({BOX})"
+        if carried and mass <= FRAME:
+            remedy = "leave out the inertial of a mere frame"
+        return [Finding("warning" if carried else "error", place, message, remedy)]
+    frame = carried and mass <= FRAME
     if principal[0] <= 1e-12 * principal[2]:
-        harmless = carried and principal[0] >= -1e-12 * principal[2]
+        harmless = frame or (carried and principal[0] >= -1e-12 * principal[2])
         return [
             Finding(
                 "warning" if harmless else "error",
                 place,
                 f"inertia is not positive definite (principal moments {shown} kg m^2)",
-                "check signs and products",
+                "leave out the inertial of a mere frame" if frame else "check signs and products",
             )
         ]
     if principal[2] > (principal[0] + principal[1]) * (1 + 1e-9):
         return [
             Finding(
-                "error",
+                "warning" if frame else "error",
                 place,
                 f"no body has this inertia (principal moments {shown} kg m^2)",
-                "the largest must not exceed the sum of the others; correct them in the file (a "
-                "box of edges a, b, c has m (b^2 + c^2) / 12 about a)",
+                f"the largest must not exceed the sum of the others; correct them in the file "
+                f"({BOX})",
             )
         ]
     gyration = math.sqrt(principal[2] / mass)
@@ -160,13 +186,11 @@ def _drawings(link: Any) -> list[Finding]:
 
 
 def _meshes(link: Any, source: str | Path) -> list[Finding]:
-    """Mesh files of a link that are not where the URDF says; `package://` names are left to ROS."""
+    """Mesh files of a link that are not where the URDF says; those of ROS packages are left out."""
     findings = []
     for mesh in link.iter("mesh"):
         name = (mesh.get("filename") or "").removeprefix("file://")
-        if "://" in name or (isinstance(source, str) and source.lstrip().startswith("<")):
-            continue
-        if not name or not (Path(source).parent / name).is_file():
+        if "://" not in name and not is_there(name, Path(source)):
             findings.append(
                 Finding(
                     "error",

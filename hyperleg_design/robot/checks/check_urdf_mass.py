@@ -15,11 +15,12 @@ SMALLEST = 0.05
 """Extent from which a robot has a size to compare with [m]."""
 
 
-def check_mass(model: Any) -> list[Finding]:
+def check_mass(model: Any, metre: float = 1.0) -> list[Finding]:
     """Compare the total mass with the distance between the outermost points of the zero posture.
 
     Args:
         model: Pinocchio's model of the robot.
+        metre: length of a metre in the file's unit; 1000 where lengths are millimetres.
 
     Returns:
         A warning where the robot is denser than `DENSEST`.
@@ -32,7 +33,7 @@ def check_mass(model: Any) -> list[Finding]:
     bodies = [(body, at) for body, at in zip(model.inertias, data.oMi, strict=True) if body.mass]
     points += [at.act(body.lever) for body, at in bodies]
     places = np.array(points)
-    extent = float(np.linalg.norm(places[:, None] - places, axis=-1).max())
+    extent = float(np.linalg.norm(places[:, None] - places, axis=-1).max()) / metre
     mass = sum(body.mass for body, _ in bodies)
     if extent < SMALLEST or mass < DENSEST * extent**3:
         return []

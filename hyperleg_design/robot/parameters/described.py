@@ -10,11 +10,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.reading import short_name
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.parameters.fields import Rule
 from hyperleg_design.robot.parameters.values import Origin
@@ -161,8 +163,9 @@ class RobotDesign:
         """
         values = self.by_path(values)
         sums = self.lapsed(values)
-        lapse = Origin("derived", f"lapsed: a mass was replaced by {where}")
-        origins = {**self.origins, **dict.fromkeys(values, Origin(label, where))}
+        source = short_name(Path(where))
+        lapse = Origin("derived", f"lapsed: a mass was replaced by {source}")
+        origins = {**self.origins, **dict.fromkeys(values, Origin(label, source))}
         origins |= dict.fromkeys(sums, lapse)
         return self._replaced({**values, **sums}, where, origins)
 

@@ -263,7 +263,8 @@ def unknown(name: str, known: list[str], what: str = "field") -> str:
     Returns:
         The text.
     """
-    return f"no such {what}; {meant(name, known, f'there are {some(known)}')}"
+    every = f"there are {some(known) or 'none'}"
+    return f"no such {what}; {meant(name, known, every)}"
 
 
 def some(names: Iterable[str]) -> str:

@@ -16,12 +16,13 @@ from hyperleg_design.robot.laws.friction import joint_friction
 from hyperleg_design.robot.laws.gear import rotor_inertia
 from hyperleg_design.robot.parameters import values as parameters
 from hyperleg_design.robot.trees import limb_actuation, limb_masses
+from hyperleg_design.robot.trees.rod_check import check_rods, spanned
 from hyperleg_design.robot.trees.tree_design import TreeDesign
 
 LARGEST_CONDITION = 1e6
 """Condition number of `joint_from_motor` from which it counts as singular."""
-
-
+NO_REDUCTION = 1e-9
+"""Reduction below which a motor does not move a joint, but for rounding [-]."""
 MOVES = 0.01
 """Share of a joint in a motion that no motor drives, from which it is named."""
 
@@ -131,6 +132,7 @@ def check_tree_design(design: TreeDesign) -> None:
                 remedy = _unknown_link(link, list(links))
                 raise InputError(where, f"{section}.{name}.{field}", link, remedy)
     _check_joints(design, where)
+    check_rods(design, where)
     _check_motors(design, where)
     _check_bodies(design, where)
     _check_actuation(design, where)
@@ -236,13 +238,20 @@ def _check_actuation(design: TreeDesign, where: str) -> None:
     joints, columns = list(design.joint_sections), list(design.actuator_sections)
     matrix = limb_actuation.joint_from_motor(design)
     for index, name in enumerate(joints):
-        if not np.any(matrix[..., index, :]):
+        if np.all(np.abs(matrix[..., index, :]) < NO_REDUCTION):
+            for rod in design.rod_sections:
+                if name in spanned(design, rod):
+                    remedy = (
+                        f"does not turn the joint {name} in the default posture, where the rod "
+                        f"points at the axis of that joint or along it; move its points"
+                    )
+                    raise InputError(where, f"rods.{rod}", None, remedy)
             raise InputError(
                 where,
                 f"joints.{name}",
                 None,
-                f"has no motor; let one of {parameters.some(columns)} drive it under transmission, "
-                f"or set its type to fixed",
+                f"has no motor; let one of {parameters.some(columns)} drive it under transmission "
+                f"or rods, or set its type to fixed",
             )
     if len(columns) < len(joints):
         raise InputError(

@@ -238,7 +238,9 @@ def _transmission(
             entry = {motor: entry}
         for joint in entry:
             if joint not in joints:
-                remedy = parameters.unknown(str(joint), joints).replace("field", "moving joint")
+                remedy = parameters.unknown(str(joint), joints, "moving joint")
+                if joint in sections["joints"]:
+                    remedy = "is fixed or locked, so no motor drives it; leave one of the two out"
                 raise InputError(where, f"transmission.{motor}.{joint}", None, remedy)
         entries[motor] = dict(entry)
     return entries

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 
 JOINTS = ("shoulder", "elbow")
 LINKS = ("upper", "lower")
@@ -133,7 +133,7 @@ def read_model(path: Path) -> DoublePendulum:
     for key in KEYS:
         value = content.get(key)
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise InputError(short_name(path), key, value, "expects a number")
+            raise InputError(given_path(path), key, value, "expects a number")
         values[key] = float(value)
     rotor = values["gr"] ** 2 * values["Ir"]
 

@@ -86,7 +86,7 @@ FAULTS = {
 }
 
 DOUBTS = {
-    "degrees": ('lower="-1" upper="2"', 'lower="-90" upper="120"', "radians"),
+    "degrees": ('lower="-1" upper="2"', 'lower="-9" upper="2"', "radians"),
     "zero posture": ('lower="-1" upper="2"', 'lower="0.5" upper="2"', "zero posture"),
     "long axis": (
         '<axis xyz="0 1 0"/>\n    <limit lower="-1" upper="2"',

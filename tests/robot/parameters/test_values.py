@@ -254,3 +254,7 @@ def test_an_error_does_not_list_a_hundred_names():
     assert parameters.some(many) == "a0.*, a1.*, a2.*, a3.*, a4.*"
     assert parameters.some(many[:20]).endswith(", ...")
     assert parameters.some(["x", "y"]) == "x, y"
+
+
+def test_an_empty_list_of_names_is_called_none():
+    assert parameters.unknown("knee", [], "joint") == "no such joint; there are none"

@@ -46,3 +46,11 @@ def test_values_are_replaced_checked_and_remembered():
 def test_a_replaced_mass_lets_the_published_total_lapse():
     design = load_robot("mini_cheetah", overrides=["links.shank.mass=0.1"])
     assert design["masses.expected_total"] == 0
+
+
+def test_a_motor_on_a_fixed_joint_is_refused_by_that():
+    fixed = leg_file()["joints"]
+    fixed["knee"]["type"] = "fixed"
+    ratios = {"hip": {"hip": 1.0}, "knee": {"knee": 1.5}}
+    with pytest.raises(InputError, match=r"transmission\.knee\.knee: is fixed or locked"):
+        leg(joints=fixed, transmission=ratios)

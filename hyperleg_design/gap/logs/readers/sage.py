@@ -20,6 +20,7 @@ from hyperleg_design.gap.logs.columns import columns_of
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.readers.source import beside, build_log, joint_names
 from hyperleg_design.gap.logs.readers.timebase import onto, sorted_stream
+from hyperleg_design.reading import given_path
 
 STATE, CONTROL, JOINTS = "state_motor.csv", "control.csv", "joint_list.txt"
 SO101 = ("Rotation", "Pitch", "Elbow", "Wrist_Pitch", "Wrist_Roll", "Jaw")
@@ -150,7 +151,7 @@ def _table(path: Path, columns: tuple[str, ...]) -> tuple[np.ndarray, dict[str, 
     """Time [s] `(t,)` and the columns of lists `(t, n)` of one CSV file."""
     import pandas as pd
 
-    where = f"{path.parent.name}/{path.name}"
+    where = given_path(path)
     if not path.is_file():
         remedy = f"is missing: a recording is a folder with {STATE}, {CONTROL} and {JOINTS}"
         raise InputError(where, "", None, remedy)
