@@ -219,13 +219,15 @@ class GroundRules:
     noise makes)."""
     straight: float = 2.0
     """Least ratio of that speed to the one across the force [-] (assumed)."""
-    least_time: float = 0.1
-    """Least time that a foot slides [s] (assumed)."""
-    same: float = 0.1
+    least_time: float = 0.3
+    """Least time that a foot slides [s] (developed: a foot that crept seemed to for 0.16 s, feet on
+    slippery floors did for 0.6 s and more)."""
+    same: float = 0.2
     """Largest range of the middle half of the ratios of force to load over their median, so that
-    they count as one coefficient [-] (assumed)."""
-    beyond: float = 1.1
-    """Ratio over the sliding one that loaded ticks exceed seldom [-] (assumed)."""
+    they count as one coefficient [-] (developed: noise of the forces makes 0.1 to 0.15 of it on
+    slippery floors, and feet that stick 0.7 and more)."""
+    beyond: float = 1.3
+    """Ratio over the sliding one that loaded ticks exceed seldom [-] (developed, likewise)."""
     seldom: float = 0.02
     """Share of the loaded ticks that may exceed it [-] (assumed)."""
     speeds: float = 1.5

@@ -2,8 +2,8 @@
 
 A pad that sticks may have any tangential force within its friction cone, and one that creeps, in
 rubber as in soft contacts, has one that grows with its speed. But a foot that slides has the same
-ratio of tangential force to load at any speed: the friction coefficient mu, which is known to a few
-per cent after a tenth of a second. Masses, drives and soles do not enter. The friction pyramid of a
+ratio of tangential force to load at any speed: the friction coefficient mu, which some tenths of a
+second tell to a few per cent. Masses, drives and soles do not enter. The friction pyramid of a
 simulator has another ratio in every direction, which is not taken for a slippery ground.
 """
 
