@@ -163,11 +163,10 @@ def _rate(trial: Trial) -> int:
 
 def _frames(trial: Trial, rate: int) -> dict[str, np.ndarray]:
     """Signals at the start of each policy step, and the time since the episode's start [s]."""
+    signals = SIGNALS | {feature: signal for feature, (signal, _) in BASE.items()}
     columns = {
         feature: np.asarray(getattr(trial, signal), np.float32)[:: trial.substeps]
-        for feature, signal in (
-            SIGNALS | {name: signal for name, (signal, _) in BASE.items()}
-        ).items()
+        for feature, signal in signals.items()
     }
     count = len(columns["observation.state"])
     return {**columns, "timestamp": (np.arange(count) / rate).astype(np.float32)}
@@ -224,13 +223,10 @@ def _info(
     tasks: Sequence[str],
     frames: int,
 ) -> dict[str, Any]:
+    columns = dict.fromkeys(SIGNALS, joints) | {name: own for name, (_, own) in BASE.items()}
     features: dict[str, Any] = {
-        feature: {"dtype": "float32", "shape": [len(joints)], "names": list(joints)}
-        for feature in SIGNALS
-    }
-    features |= {
         feature: {"dtype": "float32", "shape": [len(names)], "names": list(names)}
-        for feature, (_, names) in BASE.items()
+        for feature, names in columns.items()
     }
     features["timestamp"] = {"dtype": "float32", "shape": [1], "names": None}
     features |= {name: {"dtype": "int64", "shape": [1], "names": None} for name in COUNTERS}

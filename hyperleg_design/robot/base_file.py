@@ -29,10 +29,8 @@ def base_file(path: Path, name: Any) -> Path:
     """
     text, shipped = str(name), resources.names("descriptions")
     is_path = "/" in text or "\\" in text or text.endswith((".yaml", ".yml"))
-    files = [text, f"{text}.yaml"] if is_path else [f"{text}.yaml"]
-    places = [path.parent / file for file in files] + [Path(file) for file in files if is_path]
     try:
-        for place in places:
+        for place in _places(path, text, is_path):
             if place.is_file():
                 return place
     except OSError as error:  # a name too long, a folder closed to us
@@ -47,6 +45,12 @@ def base_file(path: Path, name: Any) -> Path:
         reason += ", neither from the folder of this file nor from that of the command"
     remedy = f"{reason}; {meant(Path(text).stem, known)}"
     raise InputError(given_path(path), "base", name, remedy)
+
+
+def _places(path: Path, name: str, is_path: bool) -> list[Path]:
+    """Where the base of a file may lie, the first one first."""
+    files = [name, f"{name}.yaml"] if is_path else [f"{name}.yaml"]
+    return [path.parent / file for file in files] + [Path(file) for file in files if is_path]
 
 
 def _holds_design(path: Path, depth: int = 8) -> bool:
@@ -67,5 +71,5 @@ def _holds_design(path: Path, depth: int = 8) -> bool:
         return False
     if base in resources.names("descriptions"):
         return True
-    files = [path.parent / base, path.parent / f"{base}.yaml", Path(base)]
+    files = _places(path, base, is_path=True)
     return any(_holds_design(file, depth - 1) for file in files if file.is_file())

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.reading import given_path
+from hyperleg_design.reading import given_path, short_name
 from hyperleg_design.robot.checks.check_units import WORLD, check_ends, check_step
 from hyperleg_design.robot.checks.check_urdf import check_urdf
 from hyperleg_design.robot.checks.finding import Finding
@@ -71,10 +71,16 @@ class FileRobot:
 
     name: str
     source: str
+    """Path of the file as it was given, for messages."""
     root: str
     floating: bool
     links: dict[str, FileLink]
     joints: dict[str, FileJoint]
+
+    @property
+    def origin(self) -> str:
+        """The file as the source of values, wherever it lay: its folder and name."""
+        return short_name(Path(self.source))
 
 
 def read_robot(path: str | Path, *, meshes: bool = True) -> FileRobot:

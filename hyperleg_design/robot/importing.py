@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError, OutputError
-from hyperleg_design.reading import given_path, read_yaml, short_name
+from hyperleg_design.reading import given_path, read_yaml
 from hyperleg_design.robot import transmission
 from hyperleg_design.robot.assumed_posture import NEAREST, nearest_to_zero
 from hyperleg_design.robot.build import design_yaml
@@ -179,7 +179,7 @@ def design_mapping(robot: FileRobot, data: Mapping[str, Any], where: str) -> dic
         more = f", nor have {', '.join(still[1:])}" if still[1:] else ""
         remedy = f"has no motor{more}; name one under actuators, or list the joint under lock"
         raise InputError(where, f"joints.{still[0]}", None, remedy)
-    source = short_name(Path(robot.source))
+    source = robot.origin
     joints = {name: _joint(joint, source, name in locked) for name, joint in robot.joints.items()}
     for pattern, held in _section(data, "joints", where).items():
         for name in _matching(pattern, list(robot.joints), where, "joints"):
@@ -243,8 +243,8 @@ def _pads(robot: FileRobot, given: Mapping[str, Any], where: str) -> dict[str, A
             for index, (place, radius) in enumerate(own):
                 mapping[f"{link}_{index}"] = {
                     "link": link,
-                    "position": _leaf(place.tolist(), short_name(Path(robot.source))),
-                    "radius": _leaf(radius, short_name(Path(robot.source))),
+                    "position": _leaf(place.tolist(), robot.origin),
+                    "radius": _leaf(radius, robot.origin),
                 } | dict(held or {})
     return mapping
 
@@ -258,10 +258,7 @@ def _housed(
     if name not in robot.joints:
         return {"housed_in": robot.root}
     link, place = housing(robot, name, locked)
-    return {
-        "housed_in": link,
-        "place": _leaf(place.tolist(), short_name(Path(robot.source)), "derived"),
-    }
+    return {"housed_in": link, "place": _leaf(place.tolist(), robot.origin, "derived")}
 
 
 def _section(data: Mapping[str, Any], key: str, where: str) -> Mapping[str, Any]:

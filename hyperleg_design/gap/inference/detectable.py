@@ -83,7 +83,7 @@ def detectable(search: Search, beside: Hypothesis | None = None) -> tuple[Detect
                 entries.append((name, place, i, float(change[first]), most[i], information[first]))
     rules = search.rules.cause
     chance = rules.changed if search.evidence.references else rules.probability
-    least: dict[tuple[str, str, int], tuple[float, float]] = {}
+    least: dict[tuple[str, str, int, float], float] = {}
     for name, place, i, unit_size, limit, own in entries:
         hypotheses = len(search.count) * search.count[name]
         odds = float(np.log(hypotheses / chance))
@@ -92,9 +92,10 @@ def detectable(search: Search, beside: Hypothesis | None = None) -> tuple[Detect
         beyond = usual + OFTEN * search.rules.posterior.interval * deviation
         size = max((np.sqrt(2 * odds) + OFTEN) * deviation, beyond)
         # nobody knows which choice holds: what logs show is shown whichever does
-        least[name, place, i] = max(least.get((name, place, i), (0.0, limit)), (size, limit))
+        key = name, place, i, limit
+        least[key] = max(least.get(key, 0.0), size)
     sizes_shown = []
-    for (name, place, i), (size, limit) in least.items():
+    for (name, place, i, limit), size in least.items():
         parameter = EFFECTS[name].parameters[i]
         if 0 < size <= limit:
             unit = unit_at(subject, EFFECTS[name].kind, place, parameter.unit)
@@ -109,10 +110,9 @@ def _choices(effect: Effect, values: np.ndarray) -> np.ndarray:
 
 def _smallest(change: np.ndarray, choices: np.ndarray) -> list[int]:
     """Find the smallest finite change `(k,)` of each set of choices `(k, choices)`."""
-    _, kind = np.unique(choices, axis=0, return_inverse=True)
-    kind, order = kind.ravel(), np.argsort(change, kind="stable")
-    first = {int(kind[place]): int(place) for place in order[::-1] if np.isfinite(change[place])}
-    return sorted(first.values())
+    order = np.argsort(change, kind="stable")
+    _, first = np.unique(choices[order], axis=0, return_index=True)
+    return sorted(int(place) for place in order[first] if np.isfinite(change[place]))
 
 
 def usual_shape(effect: Effect, place: str, subject: Subject, values: np.ndarray) -> np.ndarray:

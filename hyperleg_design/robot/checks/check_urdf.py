@@ -11,8 +11,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from hyperleg_design.errors import in_short
-from hyperleg_design.robot.checks.check_units import check_step, check_units, step_of
+from hyperleg_design.robot.checks.check_units import LARGEST_STEP, check_units, step_of
 from hyperleg_design.robot.checks.check_urdf_joint import check_joint
 from hyperleg_design.robot.checks.check_urdf_link import check_link
 from hyperleg_design.robot.checks.check_urdf_mass import check_mass
@@ -65,7 +67,7 @@ def check_urdf(source: str | Path, *, meshes: bool = True) -> list[Finding]:
         findings += check_packages(root, drawn)
     units = [finding for joint in joints for finding in check_units(joint)]
     if not any(f.severity == "error" for f in findings):
-        far = any(f.severity == "error" for j in joints for f in check_step("", "", step_of(j)))
+        far = any(np.linalg.norm(step_of(joint)) > LARGEST_STEP for joint in joints)
         findings += _loads(root, metre=1000.0 if far else 1.0)
     findings += units
     return sorted(findings, key=lambda f: f.severity != "error")

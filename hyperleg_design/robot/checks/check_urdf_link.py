@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.robot.checks.finding import Finding
-from hyperleg_design.robot.checks.mesh_files import is_there
+from hyperleg_design.robot.checks.mesh_files import is_there, of_package
 from hyperleg_design.robot.checks.urdf_xml import check_origin, numbers, place_of
 
 SIZES = {
@@ -190,7 +190,7 @@ def _meshes(link: Any, source: str | Path) -> list[Finding]:
     findings = []
     for mesh in link.iter("mesh"):
         name = (mesh.get("filename") or "").removeprefix("file://")
-        if "://" not in name and not is_there(name, Path(source)):
+        if not of_package(name) and not is_there(name, Path(source)):
             findings.append(
                 Finding(
                     "error",

@@ -16,6 +16,15 @@ WITHOUT = (
 """What to do about a mesh that an import misses."""
 
 
+def of_package(name: str) -> bool:
+    """Whether a mesh lies in a ROS package, which may be installed anywhere.
+
+    Args:
+        name: as the URDF gives it.
+    """
+    return "://" in name and not name.startswith("file://")
+
+
 def is_there(name: str, path: Path) -> bool:
     """Look for a mesh.
 
@@ -30,7 +39,7 @@ def is_there(name: str, path: Path) -> bool:
     plain = SCHEME.sub("", name)
     if not plain:
         return False
-    if "://" not in name or name.startswith("file://"):
+    if not of_package(name):
         return (path.parent / plain).is_file()
     inside = plain.split("/", 1)[-1]
     return any(
@@ -64,11 +73,7 @@ def check_packages(root: Any, path: Path) -> list[Finding]:
     Returns:
         A warning where one is not in the folders above the file; none otherwise.
     """
-    missing = [
-        name
-        for name in missing_meshes(root, path)
-        if "://" in name and not name.startswith("file://")
-    ]
+    missing = [name for name in missing_meshes(root, path) if of_package(name)]
     if not missing:
         return []
     first = missing[0] if len(missing) == 1 else f"{len(missing)} files such as {missing[0]}"
