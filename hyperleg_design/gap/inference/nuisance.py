@@ -67,6 +67,8 @@ BACK_EMF, OF_ROTOR = "back_emf", 0.7
 by an inertia times the acceleration, K_t^2 / (R w) for a loop of bandwidth w, which is the rotor's
 over the product of w and the motor's mechanical time constant. 0.7 is the deviation of the ratio
 [-]: time constants of 1 to 3 ms and loops of 100 Hz to 1 kHz give 0.05 to 1.6 (assumed)."""
+TORQUE_ZERO = "torque_zero"
+"""Zero of a torque sensor between gear and link, in each log (`zeros`)."""
 UNLISTED = (
     *SPEEDS,
     SOLE,
@@ -78,6 +80,7 @@ UNLISTED = (
     FILTERED,
     TARGETS_AGED,
     BACK_EMF,
+    TORQUE_ZERO,
 )
 """Nuisance parameters that belong to no effect of the catalogue, one of each name at a place."""
 

@@ -33,6 +33,7 @@ from hyperleg_design.gap.inference.nuisance import (
     SWUNG,
     TARGETS_AGED,
     TOLD_LATE,
+    TORQUE_ZERO,
     TORQUES_LATE,
     TURNOVER,
     UNLISTED,
@@ -207,6 +208,19 @@ def _back_emf(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarra
     return _alone(before_measurement(signals, {motor: missing[None]}))
 
 
+def _zero(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
+    """Trace of `TORQUE_ZERO`: what a sensor reads too much, its motor seems to give and its joint
+    not to need.
+    """
+    motor = signals.subject.motors.index(error.location)
+    if not signals.sensed_behind[motor] or not is_measured(signals, motor):
+        return {}
+    read = np.zeros_like(signals.believed)
+    read[:, motor] = error.spread
+    traced = {"motion": -applied(signals.subject.joint_from_motor, read)}
+    return traced | ({"drive": read} if "drive" in signals.residual else {})
+
+
 def _alone(trace: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The only row of a trace `(1, t, columns)` in each residual."""
     return {residual_name: rows[0] for residual_name, rows in trace.items()}
@@ -254,6 +268,7 @@ _OWN = {
     FILTERED: _filtered,
     TARGETS_AGED: _aged,
     BACK_EMF: _back_emf,
+    TORQUE_ZERO: _zero,
     **dict.fromkeys(SPEEDS, _speeds),
 }
 """Traces of parameters that belong to no effect of the catalogue; of all others `_told`."""

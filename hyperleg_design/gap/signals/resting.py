@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.gap.signals.sliding import presliding, shaken
+from hyperleg_design.gap.signals.sliding import presliding, shaken, sliding
 
 LEAST_MOVING = 0.08
 """Share of known ticks in which a joint moves from which its rest is left out."""
@@ -128,7 +128,12 @@ def sticking(signals: Signals) -> np.ndarray:
     moved = maximum_filter1d(signals.position, span, axis=0) - minimum_filter1d(
         signals.position, span, axis=0
     )
-    still = (moved < 2 * presliding(signals)) & ~shaken(signals)
+    still = moved < 2 * presliding(signals)
+    if signals.behind_gears is not None:
+        # a sensor behind the gear shows at once that friction changes its way, long before the way
+        # of sliding has turned over
+        still |= signals.behind_gears & (signals.velocity * sliding(signals) < 0)
+    still &= ~shaken(signals)
     if signals.target is not None:
         target = uniform_filter1d(signals.target, span, axis=0, mode="nearest")
         ahead = np.gradient(target, signals.step, axis=0)

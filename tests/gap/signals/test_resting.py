@@ -11,7 +11,7 @@ from hyperleg_design.gap.signals.resting import (
     sticking,
     travelled,
 )
-from hyperleg_design.gap.signals.sliding import presliding
+from hyperleg_design.gap.signals.sliding import presliding, sliding
 
 
 def test_a_joint_at_rest_may_stick_and_a_moving_one_does_not(signals):
@@ -40,6 +40,24 @@ def test_a_joint_that_creeps_may_stick_unless_it_follows_a_slow_target_or_comes_
         )
     ).all()
     assert not sticking(dataclasses.replace(creeps, target=None))[20:-20].any()
+
+
+def test_a_torque_sensor_sees_friction_turn_over_before_the_joint_has_slid(signals):
+    """A joint that stops for 30 ms as it turns back, too short for rest."""
+    time, step = signals.time, signals.step
+    phase = np.cumsum(np.where((time % 1.0) < 0.03, 0.0, 1.0)) * step
+    position = 0.3 * np.cos(2 * np.pi * phase / 0.97)[:, None] * np.ones(2)
+    velocity = np.gradient(position, step, axis=0)
+    plain = dataclasses.replace(
+        signals, position=position, velocity=velocity, limit_cycle=None, target=None
+    )
+    sensed = dataclasses.replace(plain, behind_gears=np.array([True, False]))
+    more = sticking(sensed) & ~sticking(plain)
+    assert more[:, 0].any()
+    assert not more[:, 1].any()
+    against = velocity * sliding(plain) < 0
+    assert sticking(sensed)[against[:, 0], 0].all()
+    assert not sticking(sensed)[np.abs(velocity[:, 0]) > 1.0, 0].any()
 
 
 def test_way_begins_anew_at_rest_and_at_each_return():
