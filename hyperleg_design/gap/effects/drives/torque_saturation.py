@@ -36,6 +36,9 @@ nobody)."""
 HELD, SENSED = 3, 1.1
 """Ticks in a row in which a measured torque is no outlier, and how much too large a sensor may tell
 it [-] (assumed)."""
+NEAR = 0.95
+"""Largest limit over the model's [-]: simulators cut the torque after the error of a torque
+constant, drives the current before it (assumed)."""
 SOURCE = "drives' current limits of 50-80 % of the peak (assumed); `usual` knows the motor"
 
 
@@ -115,13 +118,16 @@ class TorqueSaturation(MotorEffect):
 
     @override
     def shown_bounds(self, logs: Sequence[Signals], location: str) -> np.ndarray:
-        """No limit is below the torque that was measured, or by an error of the sensor."""
+        """No limit is below the torque that was measured, or by an error of the sensor, and none is
+        so near the model's that an error of the torque constant makes the difference.
+        """
         low, high = super().shown_bounds(logs, location)
         motor = logs[0].subject.motors.index(location)
         for signals in logs:
             if signals.measured is not None:
                 high = np.minimum(high, SENSED / max(float(_held(signals)[motor]), 1e-9))
-        return np.array([low, high])
+        most = NEAR * float(logs[0].subject.torque_limit[motor])
+        return np.array([np.maximum(low, 1 / most), high])
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:

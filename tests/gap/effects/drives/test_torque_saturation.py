@@ -5,7 +5,7 @@ import pytest
 from pendulum import Wrong, misfit
 
 from hyperleg_design.gap.effects import effect
-from hyperleg_design.gap.effects.drives.torque_saturation import LEAST, SENSED
+from hyperleg_design.gap.effects.drives.torque_saturation import LEAST, NEAR, SENSED
 
 SATURATION = effect("torque_saturation")
 
@@ -71,3 +71,14 @@ def test_no_limit_is_below_a_torque_that_was_measured(pendulum):
     np.testing.assert_array_equal(bounds(2), [low, high])
     unknown = dataclasses.replace(signals, measured=None)
     np.testing.assert_array_equal(SATURATION.shown_bounds([unknown], "swing"), [low, high])
+
+
+def test_a_limit_near_the_models_is_an_error_of_the_torque_constant(pendulum):
+    signals = pendulum(Wrong())
+    low, _ = SATURATION.bounds("swing", signals.subject)
+    near = dataclasses.replace(signals.subject, torque_limit=np.array([5.0]))
+    changed = dataclasses.replace(signals, subject=near, measured=None)
+    assert SATURATION.shown_bounds([changed], "swing")[0] == pytest.approx(1 / (NEAR * 5.0))
+    unknown = dataclasses.replace(signals.subject, torque_limit=np.array([np.inf]))
+    changed = dataclasses.replace(signals, subject=unknown, measured=None)
+    assert SATURATION.shown_bounds([changed], "swing")[0] == low
