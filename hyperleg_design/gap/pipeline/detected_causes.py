@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from hyperleg_design.gap.effects import EFFECTS
@@ -28,7 +28,9 @@ OF_FEET = 0.5
 ground explains it [-]."""
 
 
-def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot], certain: float) -> Diagnosis:
+def of_feet(
+    diagnosis: Diagnosis, feet: Sequence[Underfoot], certain: float, least: float
+) -> Diagnosis:
     """Add slippery or soft ground, which feet show, to the causes of a diagnosis.
 
     Where no cause is named, the ground is the answer if at least `OF_FEET` of the gap lies under
@@ -38,6 +40,7 @@ def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot], certain: float) -> 
         diagnosis: the diagnosis so far.
         feet: effects of the ground under some feet.
         certain: probability of what is certain, `PosteriorRules.highest`.
+        least: share of a gap from which a remainder is reported, `PosteriorRules.remainder`.
 
     Returns:
         The diagnosis with them.
@@ -69,6 +72,7 @@ def of_feet(diagnosis: Diagnosis, feet: Sequence[Underfoot], certain: float) -> 
     gap = Shrinkage(before**0.5, after**0.5, 0.0, closed, (closed, closed), feet[0].unit)
     shares = (foot.weight * foot.size**2 / (before * weight) for foot in feet)
     where = (Place(o.foot, "foot", "all", share) for o, share in zip(feet, shares, strict=True))
+    diagnosis = _explained(diagnosis, names, theirs, least)
     return _instead(diagnosis, causes, gap, tuple(where))
 
 
@@ -93,6 +97,18 @@ def misplaced_feet(diagnosis: Diagnosis, subject: Subject) -> set[str]:
         for foot, name in enumerate(subject.feet)
         if joints.intersection(foot_chain(subject, foot))
     }
+
+
+def _explained(
+    diagnosis: Diagnosis, feet: Collection[str], share: float, least: float
+) -> Diagnosis:
+    """A diagnosis without what it says of the forces of some feet, which make a share of what it
+    leaves over; less than `least` is no remainder.
+    """
+    rows = {f"{foot}_{axis}" for foot in feet for axis in "xyz"}
+    shapes = tuple(shape for shape in diagnosis.residual_shape if shape["location"] not in rows)
+    left = (diagnosis.remainder or 0.0) * (1 - share)
+    return replace(diagnosis, residual_shape=shapes, remainder=left if left >= least else None)
 
 
 def _with_part(diagnosis: Diagnosis, cause: Named) -> Diagnosis:

@@ -166,5 +166,5 @@ def _beside(
                 for ground in grounds
                 if ground.closed >= least and ground.foot not in misplaced
             )
-            diagnosis = of_feet(diagnosis, foretold, certain)
+            diagnosis = of_feet(diagnosis, foretold, certain, rules.posterior.remainder)
     return diagnosis

@@ -10,11 +10,11 @@ from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
 from hyperleg_design.gap.inference.rules import PosteriorRules
 from hyperleg_design.gap.pipeline.detected_causes import misplaced_feet, of_feet
 from hyperleg_design.gap.pipeline.diagnose import diagnose
-from hyperleg_design.gap.results.diagnosis import Named, Place, Value
+from hyperleg_design.gap.results.diagnosis import Named, Place, Value, residual_shape
 from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.report.gap.text import diagnosis_text
 
-CERTAIN = PosteriorRules.most_certain
+CERTAIN, LEAST = PosteriorRules.most_certain, PosteriorRules.remainder
 OTHER = Named("coulomb_friction", "hip", 0.9, 0.8, {})
 
 
@@ -48,7 +48,7 @@ BOTH = [("ground_friction", "left_foot"), ("ground_friction", "right_foot")]
 
 
 def test_slippery_ground_is_the_cause_where_nothing_else_is(none):
-    told = of_feet(none, SLIDING, CERTAIN)
+    told = of_feet(none, SLIDING, CERTAIN, LEAST)
     assert (told.verdict, names(told.causes)) == ("explained", BOTH)
     assert (told.gap.before, told.gap.unit) == (pytest.approx(30.0), "N")
     assert told.gap.closed == pytest.approx(0.9)
@@ -61,10 +61,10 @@ def test_slippery_ground_is_the_cause_where_nothing_else_is(none):
 
 
 def test_slippery_ground_is_one_cause_more_beside_others_and_is_not_named_twice(none):
-    told = of_feet(replace(none, verdict="explained", causes=(OTHER,)), SLIDING, CERTAIN)
+    told = of_feet(replace(none, verdict="explained", causes=(OTHER,)), SLIDING, CERTAIN, LEAST)
     assert names(told.causes) == [("coulomb_friction", "hip"), *BOTH]
-    assert of_feet(told, SLIDING, CERTAIN) is told
-    assert of_feet(none, (), CERTAIN) is none
+    assert of_feet(told, SLIDING, CERTAIN, LEAST) is told
+    assert of_feet(none, (), CERTAIN, LEAST) is none
 
 
 def test_a_foot_beyond_an_encoder_that_is_named_is_elsewhere_than_its_logs_say(none):
@@ -82,10 +82,18 @@ def test_an_unknown_gap_under_feet_that_slide_is_theirs_and_another_is_not(none)
         Place("right_foot", "foot", "all", 0.3),
         Place("hip", "joint", "all", 0.3),
     )
-    assert of_feet(replace(unknown, where=under), SLIDING, CERTAIN).verdict == "explained"
+    assert of_feet(replace(unknown, where=under), SLIDING, CERTAIN, LEAST).verdict == "explained"
     elsewhere = of_feet(
-        replace(unknown, where=(Place("hip", "joint", "all", 1.0),)), SLIDING, CERTAIN
+        replace(unknown, where=(Place("hip", "joint", "all", 1.0),)), SLIDING, CERTAIN, LEAST
     )
+    left = [residual_shape("unlisted", name, "is left", 0.5) for name in ("left_foot_z", "hip")]
+    half = replace(unknown, where=under, residual_shape=tuple(left), remainder=1.0)
+    told = of_feet(half, SLIDING, CERTAIN, LEAST)
+    assert told.remainder == pytest.approx(0.3)
+    assert left[0] not in told.residual_shape
+    assert left[1] in told.residual_shape
+    all_theirs = of_feet(replace(half, where=under[:2]), SLIDING, CERTAIN, 0.5)
+    assert all_theirs.remainder is None
     assert (elsewhere.verdict, elsewhere.causes) == ("unknown", ())
     assert names(elsewhere.rivals)[0] == BOTH[0]
 
@@ -94,17 +102,24 @@ def test_soft_ground_that_creeps_is_not_slippery_but_one_that_feet_slide_on_may_
     slippery = Named("ground_friction", "left_foot", 0.9, 0.5, {})
     soft = [("ground_compliance", foot) for _, foot in BOTH]
     assert (
-        names(of_feet(replace(none, verdict="explained", causes=(slippery,)), SOFT, CERTAIN).causes)
+        names(
+            of_feet(
+                replace(none, verdict="explained", causes=(slippery,)), SOFT, CERTAIN, LEAST
+            ).causes
+        )
         == soft
     )
-    assert names(of_feet(of_feet(none, SLIDING, CERTAIN), SOFT, CERTAIN).causes) == [*BOTH, *soft]
+    assert names(of_feet(of_feet(none, SLIDING, CERTAIN, LEAST), SOFT, CERTAIN, LEAST).causes) == [
+        *BOTH,
+        *soft,
+    ]
     alike = replace(
         none,
         verdict="ambiguous",
         causes=(OTHER, slippery),
         equivalent=((BOTH[0], ("link_mass", "hip")),),
     )
-    told = of_feet(alike, SOFT, CERTAIN)
+    told = of_feet(alike, SOFT, CERTAIN, LEAST)
     assert (told.verdict, told.equivalent, names(told.causes)) == (
         "explained",
         (),

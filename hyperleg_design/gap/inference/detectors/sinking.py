@@ -8,7 +8,7 @@ of ground and sole in series, whatever the masses and drives are.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,6 +25,8 @@ EFFECT = GroundCompliance.identifier
 SINKS = "sinks"
 DEEPEST = 0.05
 """Depth up to which the nominal ground's force is tabulated [m]."""
+FINEST = 1e-4
+"""Scatter of a height below which it tells no more [m] (assumed)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,23 +36,39 @@ class Bearing:
     load: np.ndarray
     height: np.ndarray
     """Over the origin [m]."""
+    sink: np.ndarray
+    """Rate at which it goes down [m/s]."""
     nominal: np.ndarray
     """Of the nominal ground under that load, from any height [m]; `(k,)` each."""
 
+    def cut(self, part: slice) -> Bearing:
+        """Take a part of its ticks.
+
+        Args:
+            part: of the ticks.
+        """
+        return Bearing(self.load[part], self.height[part], self.sink[part], self.nominal[part])
+
     @property
     def slope(self) -> float:
-        """Way down over load [m/N]."""
-        return -_slope(self.load, self.height)
+        """Way down over load, at one rate [m/N]."""
+        height = _without(self.height, self.sink)
+        load = _without(self.load, self.sink)
+        return -float(load @ height / (load @ load))
 
     @property
     def nominal_slope(self) -> float:
         """Sinking over load by the model's own floor [m/N]."""
-        return -_slope(self.load, self.nominal)
+        load = self.load - self.load.mean()
+        return -float(load @ self.nominal / (load @ load))
 
     @property
     def weight(self) -> float:
-        """Squares of its load about the mean [N^2]."""
-        return float(np.sum((self.load - self.load.mean()) ** 2))
+        """What it tells of the slope: 1 over the square of its error [N^2/m^2]."""
+        height = _without(self.height, self.sink)
+        load = _without(self.load, self.sink)
+        left = height + self.slope * load
+        return float(load @ load / max(np.mean(left**2), FINEST**2))
 
 
 def sinks(
@@ -162,7 +180,12 @@ def bearings(signals: Signals, place: int, rules: GroundRules) -> list[Bearing]:
         )
         if used.sum() >= rules.ticks and float(load[used].std()) >= rules.loads:
             bearing_pads.append(
-                Bearing(load[used], foot.height[used, pad], -_depth(foot, pad, load[used]))
+                Bearing(
+                    load[used],
+                    foot.height[used, pad],
+                    foot.sink[used, pad],
+                    -_depth(foot, pad, load[used]),
+                )
             )
     return bearing_pads
 
@@ -200,12 +223,9 @@ def _apart(pads: Sequence[Bearing], rules: GroundRules) -> list[Bearing]:
         return list(pads)
     count = -(-rules.contacts // len(pads))
     cut = [
-        replace(pad, load=load, height=height, nominal=nominal)
+        pad.cut(slice(part[0], part[-1] + 1))
         for pad in pads
-        for load, height, nominal in zip(
-            *(np.array_split(part, count) for part in (pad.load, pad.height, pad.nominal)),
-            strict=True,
-        )
+        for part in np.array_split(np.arange(len(pad.load)), count)
     ]
     return [pad for pad in cut if float(pad.load.std()) >= rules.loads]
 
@@ -213,10 +233,11 @@ def _apart(pads: Sequence[Bearing], rules: GroundRules) -> list[Bearing]:
 def _half(pad: Bearing, late: bool, rules: GroundRules) -> Bearing | None:
     """First or second half of a pad's ticks, where its load varies enough there."""
     part = slice(len(pad.load) // 2, None) if late else slice(len(pad.load) // 2)
-    half = replace(pad, load=pad.load[part], height=pad.height[part], nominal=pad.nominal[part])
+    half = pad.cut(part)
     return half if float(half.load.std()) >= rules.loads else None
 
 
-def _slope(load: np.ndarray, height: np.ndarray) -> float:
-    apart = load - load.mean()
-    return float(apart @ height / (apart @ apart))
+def _without(values: np.ndarray, sink: np.ndarray) -> np.ndarray:
+    """Values about their mean, without what goes with the rate of sinking `(k,)`."""
+    beside = np.stack([np.ones_like(sink), sink], 1)
+    return np.asarray(values - beside @ np.linalg.lstsq(beside, values, rcond=None)[0])

@@ -157,7 +157,8 @@ def test_a_foot_with_one_pad_tells_by_stretches_of_its_log():
     rng, time = np.random.default_rng(2), np.arange(0, 8, 0.005)
     load = MEAN + CHANGE * np.sin(2 * np.pi * 0.7 * time)
     height = 0.02 - 2e-5 * load + 2e-4 * rng.normal(size=len(time))
-    pad = Bearing(load, height, -1e-5 * load)
+    sink = -np.gradient(height, time)
+    pad = Bearing(load, height, sink, -1e-5 * load)
     assert _compliance([pad], RULES) is None
     stretches = _apart([pad], RULES)
     assert len(stretches) == RULES.contacts
@@ -166,5 +167,25 @@ def test_a_foot_with_one_pad_tells_by_stretches_of_its_log():
     assert scale == pytest.approx(2.0, abs=4 * error)
     assert error < 0.1
     still = np.where(time < 4, MEAN, load)
-    assert len(_apart([Bearing(still, height, -1e-5 * still)], RULES)) == RULES.contacts / 2
+    assert len(_apart([Bearing(still, height, sink, -1e-5 * still)], RULES)) == RULES.contacts / 2
     assert _apart([pad] * RULES.contacts, RULES) == [pad] * RULES.contacts
+
+
+def test_a_damped_ground_that_lags_behind_its_load_is_as_soft_as_it_is():
+    """Slowly loaded at first, then in steps faster than the ground can follow."""
+    rng, time = np.random.default_rng(3), np.arange(0, 12, 0.005)
+    slow = MEAN + CHANGE * np.sin(2 * np.pi * 0.5 * time)
+    steps = MEAN + CHANGE * np.sign(np.sin(2 * np.pi * 4 * time))
+    load, compliance, lag = np.where(time < 8, slow, steps), 4e-5, 0.08
+    height = np.empty_like(load)
+    height[0] = -compliance * load[0]
+    for i in range(1, len(load)):  # lag h' = -(h + compliance F)
+        height[i] = height[i - 1] - 0.005 / lag * (height[i - 1] + compliance * load[i])
+    sink = -np.gradient(height, time)
+    height += 2e-4 * rng.normal(size=len(time))
+    pad = Bearing(load, height, sink, -1e-5 * load)
+    plain = load - load.mean()
+    assert -(plain @ height) / (plain @ plain) < 0.9 * compliance
+    scale, error = _compliance(_apart([pad], RULES), RULES)
+    assert scale == pytest.approx(4.0, rel=0.05)
+    assert error < 0.2
