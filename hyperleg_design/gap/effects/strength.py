@@ -18,6 +18,9 @@ limits of 1000 Nm at each joint of a small leg 1500 and more."""
 LIVELY = 10.0
 """Acceleration that a robot's drives are taken to be made for where nobody gives their limits
 [rad/s^2]; assumed."""
+BEYOND = 10.0
+"""Largest torque of a joint over what it needs, where nobody gives its limits [-] (assumed: robots
+of `example-robot-data` can give up to 13 times what their most loaded joint needs)."""
 _POSTURES = 24
 
 
@@ -35,6 +38,21 @@ def joint_strength(subject: Subject) -> np.ndarray:
     """
     given, unknown = _given(subject)
     return np.where(unknown | has_placeholders(subject), np.maximum(*_needed(subject)), given)
+
+
+@memoized
+def largest_torque(subject: Subject) -> np.ndarray:
+    """Torque that may act at each joint at most `(n,)` [Nm]: `joint_strength` where limits give it,
+    `BEYOND` times as much where it is only what the joint needs.
+
+    Args:
+        subject: the robot.
+
+    Returns:
+        The torques `(n,)` [Nm].
+    """
+    unknown = _given(subject)[1] | has_placeholders(subject)
+    return np.where(unknown, BEYOND, 1.0) * joint_strength(subject)
 
 
 def motor_strength(subject: Subject, motor: int) -> float:

@@ -70,11 +70,11 @@ def read_drives(model: Any, free_joints: Collection[str]) -> Drives:
         tendons=fixed_tendons(model, single),
         notes=notes,
     )
+    most = np.abs(model.jnt_actfrcrange[single]).max(1)
+    effort = np.where(model.jnt_actfrclimited[single] != 0, most, np.inf)
     if np.all(np.count_nonzero(actuators.matrix, 0) <= 1):
-        most = np.abs(model.jnt_actfrcrange[single]).max(1)
-        effort = np.where(model.jnt_actfrclimited[single] != 0, most, np.inf)
         return _one_a_joint(actuators, effort)
-    return _coupled(actuators)
+    return _coupled(actuators, effort)
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,8 +168,10 @@ def _one_a_joint(actuators: _Actuators, effort: np.ndarray) -> Drives:
     )
 
 
-def _coupled(actuators: _Actuators) -> Drives:
-    """Drives where some actuator moves several joints: each actuator is a motor."""
+def _coupled(actuators: _Actuators, effort: np.ndarray) -> Drives:
+    """Drives where some actuator moves several joints: each actuator is a motor. The `effort` of a
+    joint `(n,)` [Nm] limits one that moves it alone, and it alone.
+    """
     import mujoco
 
     model, indices = actuators.model, actuators.indices
@@ -185,14 +187,17 @@ def _coupled(actuators: _Actuators) -> Drives:
             armature = armature + np.diag(tendon.inertia)
         elif tendon.armature:
             couplings.append(tendon)
-    count = len(actuators.joints)
+    count, own = len(actuators.joints), actuators.matrix != 0
+    alone = own & (own.sum(0) == 1) & (own.sum(1, keepdims=True) == 1)
+    levers = np.where(alone, np.abs(actuators.matrix), 1.0)
+    most = np.where(alone, effort[:, None] / levers, np.inf).min(0)
     return Drives(
         names=actuators.names,
         aliases=actuators.names,
         matrix=actuators.matrix,
         gear=np.ones(len(actuators.names)),
         gains=np.full((count, 2), np.nan),
-        limit=actuators.limit,
+        limit=np.minimum(actuators.limit, most),
         rotor_inertia=rotor,
         armature=armature,
         couplings=tuple(couplings),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from pendulum import Wrong
 
+from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects import strength as strengths
 
 
@@ -36,3 +37,16 @@ def test_limits_far_beyond_what_all_joints_need_are_placeholders(leg):
     usual = replace(subject, torque_limit=np.full(count, 3 * needed.max()), **unlimited)
     share = np.abs(subject.joint_from_motor)
     np.testing.assert_allclose(strengths.joint_strength(usual), share @ usual.torque_limit)
+
+
+def test_a_joint_without_limits_may_take_more_than_it_needs(pendulum, leg):
+    limited = leg(duration=1.0).subject
+    np.testing.assert_array_equal(
+        strengths.largest_torque(limited), strengths.joint_strength(limited)
+    )
+    free = pendulum(Wrong()).subject
+    np.testing.assert_allclose(
+        strengths.largest_torque(free), strengths.BEYOND * strengths.joint_strength(free)
+    )
+    friction = EFFECTS["coulomb_friction"].bounds(free.joints[0], free)
+    assert friction[1, 0] == pytest.approx(strengths.largest_torque(free)[0])

@@ -6,6 +6,9 @@ from hyperleg_design.gap.model import file_drives
 TWO = """<mujoco><worldbody><body name="a"><joint name="j"/><geom size="0.1"/><body name="b" pos="0 0 1"><joint name="k"/>
   <geom size="0.1"/></body></body></worldbody><actuator>%s</actuator></mujoco>"""  # noqa: E501
 
+TENDON = """<tendon><fixed name="t"><joint joint="k" coef="1"/><joint joint="l" coef="0.5"/></fixed>
+  </tendon>"""
+
 
 def drives(actuators, kept=("j", "k")):
     return file_drives.read_drives(mujoco.MjModel.from_xml_string(TWO % actuators), kept)
@@ -42,3 +45,16 @@ def test_lever_that_changes_is_left_out_with_a_note():
     model = mujoco.MjModel.from_xml_string(text % '<general site="s" gear="0 0 1 0 0 0"/>')
     found = file_drives.read_drives(model, ("j", "k"))
     assert "lever" in found.notes[0]
+
+
+def test_the_effort_of_a_joint_limits_the_motor_that_moves_it_alone_beside_coupled_ones():
+    text = TWO.replace('name="j"/>', 'name="j" actuatorfrcrange="-60 60"/>')
+    text = text.replace("<actuator>", TENDON + "<actuator>")
+    text = text.replace(
+        'name="k"/>', 'name="k" actuatorfrcrange="-9 9"/><joint name="l" axis="1 0 0"/>'
+    )
+    model = mujoco.MjModel.from_xml_string(
+        text % '<motor joint="j" gear="4"/><motor tendon="t" forcerange="-7 7"/>'
+    )
+    found = file_drives.read_drives(model, ("j", "k", "l"))
+    assert found.limit.tolist() == [15.0, 7.0]

@@ -10,6 +10,7 @@ import numpy as np
 from typing_extensions import override
 
 from hyperleg_design.gap.effects.kinds import JointTorque
+from hyperleg_design.gap.effects.strength import largest_torque
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.sliding import WIDTH
 from hyperleg_design.simulation.alteration import Alteration, Live, Tick, resistance
@@ -53,13 +54,11 @@ class ModelledFriction(JointTorque):
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Usual bounds, up to the torque that the joint is made for, and down to no friction at
-        all.
-        """
-        bounds = super().bounds(location, subject)
-        bounds[1, 0] = min(bounds[1, 0], self.strength(location, subject))
+        """Usual bounds, up to the largest torque of the joint, and down to no friction at all."""
+        bounds, joint = super().bounds(location, subject), subject.joints.index(location)
+        bounds[1, 0] = min(bounds[1, 0], largest_torque(subject)[joint])
         if self.described:
-            bounds[0, 0] = -self.modelled(subject)[subject.joints.index(location)]
+            bounds[0, 0] = -self.modelled(subject)[joint]
         return bounds
 
     @override

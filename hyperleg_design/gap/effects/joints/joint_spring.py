@@ -13,6 +13,7 @@ from hyperleg_design.gap.effects.families import INERTIAL
 from hyperleg_design.gap.effects.kinds import JointTorque
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.placed import JointHooks, Placed
+from hyperleg_design.gap.effects.strength import largest_torque
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration, Tick
@@ -64,17 +65,13 @@ class JointSpring(JointTorque):
 
     @override
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
-        """Less stiff than the model's springs by no more than these; preload up to the torque that
-        the joint is made for.
+        """Less stiff than the model's springs by no more than these; preload up to the largest
+        torque of the joint.
         """
-        own, strength = (
-            subject.spring[subject.joints.index(location)],
-            self.strength(location, subject),
-        )
+        joint = subject.joints.index(location)
+        own, most = subject.spring[joint], largest_torque(subject)[joint]
         low, high = super().bounds(location, subject)
-        return np.array(
-            [np.maximum(low, [-own, -strength]), np.minimum(high, [20 * strength, strength])]
-        )
+        return np.array([np.maximum(low, [-own, -most]), np.minimum(high, [20 * most, most])])
 
     @override
     def derived(
