@@ -92,15 +92,9 @@ def motion_of(log: Log, subject: Subject | None) -> Motion:
         if len(speeds) > 10:
             spread[i] = np.percentile(speeds, 90) / max(np.percentile(speeds, 10), 1e-9)
             slow[i] = np.mean(speeds < 0.1 * speeds.max())
-    coupled = subject is not None and tuple(subject.motors) != tuple(subject.joints)
-    aliases = (
-        {} if subject is None else dict(zip(subject.motors, subject.motor_aliases, strict=True))
-    )
-    names = [(joint, aliases.get(joint, joint)) for joint in joints]
+    names = [(joint, *_movers(subject, joint)) for joint in joints]
 
     def anywhere(*kinds: str) -> np.ndarray:
-        if coupled and any(log.has(kind, motor) for kind in kinds for motor in log.motors):
-            return np.ones(len(joints), bool)
         some = [any(log.has(kind, name) for kind in kinds for name in own) for own in names]
         return np.array(some, bool)
 
@@ -111,7 +105,8 @@ def motion_of(log: Log, subject: Subject | None) -> Motion:
     with_gains = np.array([log.has("position_target", j) for j in joints], bool) & known
     measured = anywhere("joint_torque", "motor_torque", "motor_current")
     asked = with_gains | anywhere("motor_torque_command")
-    commands = np.array([_content(_asked(log, own), rate, noisy=False) for own in names])
+    asked_of = [[_content(a, rate, noisy=False) for a in _asked(log, own)] for own in names]
+    commands = np.array([max(contents, default=0.0) for contents in asked_of])
     content = np.array([_content(q, rate) for q in position.T]) * moving.any(0)
     swing = np.nanmax(position, 0) - np.nanmin(position, 0)
     return Motion(
@@ -155,13 +150,22 @@ def _acceleration(log: Log, velocity: np.ndarray) -> np.ndarray:
     return np.asarray(np.percentile(np.abs(change), 95, axis=0) / (width * log.step))
 
 
-def _asked(log: Log, names: Sequence[str]) -> np.ndarray:
-    """What a joint, or its motor under a name of its own, was asked for."""
+def _movers(subject: Subject | None, joint: str) -> tuple[str, ...]:
+    """Names of the motors that move a joint, and of their actuators."""
+    if subject is None or joint not in subject.joints:
+        return ()
+    own = np.flatnonzero(subject.joint_from_motor[subject.joints.index(joint)])
+    names = ((subject.motors[motor], subject.motor_aliases[motor]) for motor in own)
+    return tuple(name for pair in names for name in pair)
+
+
+def _asked(log: Log, names: Sequence[str]) -> list[np.ndarray]:
+    """What a joint was asked for, else each of its motors."""
     for kind in ("position_target", "motor_torque_command"):
-        for name in names:
-            if log.has(kind, name):
-                return log.column(f"{kind}/{name}")
-    return np.empty(0)
+        found = [name for name in dict.fromkeys(names) if log.has(kind, name)]
+        if found:
+            return [log.column(f"{kind}/{name}") for name in found]
+    return []
 
 
 def _speed(log: Log, joint: str) -> np.ndarray:

@@ -22,6 +22,7 @@ def robot(**changes):
     )
     facts = {"joints": ("hip", "knee"), "motors": ("hip", "knee"), "motor_aliases": ("hip", "knee")}
     facts |= {"gains": np.full((2, 2), np.nan), "floating": False, "spring": np.zeros(2)}
+    facts |= {"joint_from_motor": np.eye(2)}
     facts |= {"gravity": np.array([0.0, -9.81, 0.0]), "tree": tree}
     return SimpleNamespace(**facts | changes)
 
@@ -69,6 +70,21 @@ def test_torques_count_under_the_motors_own_names():
     subject = robot(motor_aliases=("m1", "m2"))
     assert not motion_of(log, None).measured.any()
     assert motion_of(log, subject).measured.all()
+
+
+def test_commands_of_coupled_motors_count_at_the_joints_that_they_move():
+    log = rig_log()
+    kept = {n: v for n, v in log.signals.items() if n.startswith("position/")}
+    fast = np.sin(2 * np.pi * 12 * log.time)
+    slow = np.sin(2 * np.pi * 0.3 * log.time)
+    kept |= {"motor_torque_command/fast": fast, "motor_torque_command/slow": slow}
+    motors, both = ("fast", "slow"), np.array([[1.0, 1.0], [0.0, 1.0]])
+    subject = robot(motors=motors, motor_aliases=motors, joint_from_motor=both)
+    motion = motion_of(log.changed(signals=kept), subject)
+    assert motion.asked.all()
+    hip, knee = motion.command
+    assert hip == pytest.approx(12, rel=0.1)
+    assert knee < 0.5
 
 
 def test_without_reversals_no_friction_and_no_backlash():
