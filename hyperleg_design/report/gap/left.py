@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.gap.model.joint_units import joint_unit
+from hyperleg_design.gap.pipeline.detected_causes import APART
 from hyperleg_design.gap.playback.evidence import Evidence
 from hyperleg_design.gap.playback.sheets import root_mean_square
 
@@ -87,7 +88,7 @@ def friction(shown: Sequence[Evidence], row: int) -> Friction:
 
 def hints(shapes: Sequence[Mapping[str, Any]], shown: Sequence[Evidence]) -> list[str]:
     """Describe what is left of a gap: plain friction where it fits nearly as well as the shape that
-    was found, else that shape.
+    was found, else that shape; and what feet do that slide or sink.
 
     Args:
         shapes: `residual_shape` of the diagnosis, the largest first.
@@ -102,6 +103,9 @@ def hints(shapes: Sequence[Mapping[str, Any]], shown: Sequence[Evidence]) -> lis
     sentences: dict[str, None] = {}
     for shape in shapes:
         place = str(shape["location"])
+        if shape.get("shape") in APART:
+            sentences[f"{place} {shape['says']}."] = None
+            continue
         enough = max(PLAIN, NEARLY * float(shape.get("closed_beyond", 0.0)))
         if place in rows:
             fit = fits[rows.index(place)]

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hyperleg_design.gap.inference.detectors.sinking import SINKS
 from hyperleg_design.gap.playback.evidence import Evidence
 from hyperleg_design.report.gap.left import friction, hints
 
@@ -53,6 +54,13 @@ def test_what_drives_the_joint_is_no_friction() -> None:
 def test_plain_friction_is_said_once_instead_of_other_shapes() -> None:
     (sentence,) = hints([SHAPE, SHAPE], shown(0.3 * np.sign(SPEED), SPEED))
     assert sentence.startswith("Left at hinge: a torque that goes with its speed. Plain friction")
+
+
+def test_feet_that_sink_are_said_beside_what_is_left() -> None:
+    sinks = {"shape": SINKS, "location": "toe", "says": "sinks by 4 mm", "closed_beyond": 0.9}
+    sentences = hints([sinks, SHAPE], shown(0.3 * np.sign(SPEED), SPEED))
+    assert sentences[0] == "toe sinks by 4 mm."
+    assert sentences[1].startswith("Left at hinge")
 
 
 def test_another_shape_is_said_where_friction_does_not_fit() -> None:
