@@ -162,9 +162,9 @@ def _movers(subject: Subject | None, joint: str) -> tuple[str, ...]:
 def _asked(log: Log, names: Sequence[str]) -> list[np.ndarray]:
     """What a joint was asked for, else each of its motors."""
     for kind in ("position_target", "motor_torque_command"):
-        found = [name for name in dict.fromkeys(names) if log.has(kind, name)]
-        if found:
-            return [log.column(f"{kind}/{name}") for name in found]
+        logged = [name for name in dict.fromkeys(names) if log.has(kind, name)]
+        if logged:
+            return [log.column(f"{kind}/{name}") for name in logged]
     return []
 
 
