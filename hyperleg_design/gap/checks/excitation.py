@@ -92,7 +92,7 @@ def motion_of(log: Log, subject: Subject | None) -> Motion:
         if len(speeds) > 10:
             spread[i] = np.percentile(speeds, 90) / max(np.percentile(speeds, 10), 1e-9)
             slow[i] = np.mean(speeds < 0.1 * speeds.max())
-    names = [(joint, *_movers(subject, joint)) for joint in joints]
+    names = [tuple(dict.fromkeys((joint, *_movers(subject, joint)))) for joint in joints]
 
     def anywhere(*kinds: str) -> np.ndarray:
         some = [any(log.has(kind, name) for kind in kinds for name in own) for own in names]
@@ -162,7 +162,7 @@ def _movers(subject: Subject | None, joint: str) -> tuple[str, ...]:
 def _asked(log: Log, names: Sequence[str]) -> list[np.ndarray]:
     """What a joint was asked for, else each of its motors."""
     for kind in ("position_target", "motor_torque_command"):
-        logged = [name for name in dict.fromkeys(names) if log.has(kind, name)]
+        logged = [name for name in names if log.has(kind, name)]
         if logged:
             return [log.column(f"{kind}/{name}") for name in logged]
     return []

@@ -36,8 +36,7 @@ def joint_strength(subject: Subject) -> np.ndarray:
     Returns:
         The torques `(n,)` [Nm].
     """
-    given, unknown = _given(subject)
-    return np.where(unknown | has_placeholders(subject), np.maximum(*_needed(subject)), given)
+    return np.where(_unlimited(subject), np.maximum(*_needed(subject)), _given(subject)[0])
 
 
 @memoized
@@ -51,8 +50,7 @@ def largest_torque(subject: Subject) -> np.ndarray:
     Returns:
         The torques `(n,)` [Nm].
     """
-    unknown = _given(subject)[1] | has_placeholders(subject)
-    return np.where(unknown, BEYOND, 1.0) * joint_strength(subject)
+    return np.where(_unlimited(subject), BEYOND, 1.0) * joint_strength(subject)
 
 
 def motor_strength(subject: Subject, motor: int) -> float:
@@ -110,6 +108,11 @@ def _given(subject: Subject) -> tuple[np.ndarray, np.ndarray]:
     share, known = np.abs(subject.joint_from_motor), np.isfinite(most)
     given = share @ np.where(known, most, 0.0)
     return given, (share @ (~known).astype(float) > 0) | (given <= 0)
+
+
+def _unlimited(subject: Subject) -> np.ndarray:
+    """Joints whose limits nobody gives `(n,)`."""
+    return _given(subject)[1] | has_placeholders(subject)
 
 
 @memoized

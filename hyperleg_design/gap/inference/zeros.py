@@ -83,7 +83,7 @@ class Zeros:
             samples: of them.
             tested: whether they are under test.
         """
-        logs, places = np.nonzero(self.spread)
+        logs, _ = np.nonzero(self.spread)
         columns = np.zeros((len(logs), len(samples.value)))
         first = 0 if tested else self.tests
         for log, (filtered, where) in enumerate(
@@ -91,9 +91,11 @@ class Zeros:
         ):
             own = np.flatnonzero(logs == log)
             zeros = [
-                NuisanceParameter(effect, location, 0, float(self.spread[log, place]))
-                for place in places[own].tolist()
-                for effect, location in [self.names[place]]
+                NuisanceParameter(effect, location, 0, spread)
+                for (effect, location), spread in zip(
+                    self.names, self.spread[log].tolist(), strict=True
+                )
+                if spread
             ]
             for row, traces in nuisance_traces.columns(filtered, zeros).items():
                 columns[own, where[row]] = traces

@@ -48,6 +48,18 @@ NEARLY = 0.85
 """Similarity from which a name is taken for a misspelt signal [-] (difflib's ratio)."""
 
 
+def force_names(places: Iterable[str]) -> tuple[str, ...]:
+    """Name the parts of the ground's forces on feet or pads.
+
+    Args:
+        places: names of feet or pads.
+
+    Returns:
+        Each of them with each axis, as after `contact_force/`.
+    """
+    return tuple(f"{place}_{axis}" for place in places for axis in "xyz")
+
+
 def known_column(column: str) -> bool:
     """Decide whether the log format has a column.
 

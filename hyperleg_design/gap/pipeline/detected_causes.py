@@ -10,6 +10,7 @@ from hyperleg_design.gap.inference.detectors.sinking import SINKS
 from hyperleg_design.gap.inference.detectors.slipping import EFFECT as SLIPPERY
 from hyperleg_design.gap.inference.detectors.slipping import SLIPS
 from hyperleg_design.gap.inference.detectors.underfoot import Underfoot
+from hyperleg_design.gap.logs.columns import force_names
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.diagnosis import (
     MOST_RIVALS,
@@ -105,8 +106,8 @@ def _explained(
     """A diagnosis without what it says of the forces of some feet, which make a share of what it
     leaves over; less than `least` is no remainder.
     """
-    rows = {f"{foot}_{axis}" for foot in feet for axis in "xyz"}
-    shapes = tuple(shape for shape in diagnosis.residual_shape if shape["location"] not in rows)
+    theirs = set(force_names(feet))
+    shapes = tuple(shape for shape in diagnosis.residual_shape if shape["location"] not in theirs)
     left = (diagnosis.remainder or 0.0) * (1 - share)
     return replace(diagnosis, residual_shape=shapes, remainder=left if left >= least else None)
 

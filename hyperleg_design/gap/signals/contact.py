@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hyperleg_design.errors import InputError, meant
+from hyperleg_design.gap.logs.columns import CONTACT, force_names
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.pads import pad_points
@@ -87,10 +88,8 @@ def contacts(
         return Ground(None, None, touching)
 
     def force(names: list[str] | tuple[str, ...]) -> np.ndarray:
-        columns = [f"{name}_{axis}" for name in names for axis in "xyz"]
-        return resampled(log.time, log.stack("contact_force", columns), ticks).reshape(
-            len(ticks), -1, 3
-        )
+        known = log.stack(CONTACT, force_names(names))
+        return resampled(log.time, known, ticks).reshape(len(ticks), -1, 3)
 
     on_pads, on_feet = force(pad_names), force(feet)
     unlogged = _feet_without_force(subject, log.feet)

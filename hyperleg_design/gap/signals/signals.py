@@ -9,6 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
+from hyperleg_design.gap.logs.columns import force_names
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.joint_units import unit_at
@@ -49,14 +50,13 @@ def row_names(subject: Subject, residual_name: str) -> tuple[str, ...]:
         Joints, motors, parts of the base's wrench, each foot with each axis, or the axes of a
         sensor.
     """
-    feet = tuple(f"{foot}_{axis}" for foot in subject.feet for axis in "xyz")
     kind, _ = RESIDUALS[residual_name]
     sensor = tuple(f"{residual_name}_{axis}" for axis in "xyz")
     return {
         "joint": subject.joints,
         "motor": subject.motors,
         "robot": WRENCH,
-        "foot": feet,
+        "foot": force_names(subject.feet),
         "sensor": sensor,
     }[kind]
 

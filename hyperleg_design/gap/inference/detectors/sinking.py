@@ -2,13 +2,15 @@
 
 The height of the floor is not known to a millimetre, and errors of encoders and links shift the
 height of a foot by about as much at all loads. But the slope of height over load is the compliance
-of ground and sole in series, whatever the masses and drives are.
+of ground and sole in series, whatever the masses and drives are. A damped ground lags behind its
+load, so what goes with the rate at which the pad goes down is taken out of both first.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -49,11 +51,18 @@ class Bearing:
         """
         return Bearing(self.load[part], self.height[part], self.sink[part], self.nominal[part])
 
+    @cached_property
+    def _at_one_rate(self) -> tuple[np.ndarray, np.ndarray]:
+        """Load and height about their means, without what goes with the rate of sinking."""
+        beside = np.stack([np.ones_like(self.sink), self.sink], 1)
+        both = np.stack([self.load, self.height], 1)
+        load, height = (both - beside @ np.linalg.lstsq(beside, both, rcond=None)[0]).T
+        return load, height
+
     @property
     def slope(self) -> float:
         """Way down over load, at one rate [m/N]."""
-        height = _without(self.height, self.sink)
-        load = _without(self.load, self.sink)
+        load, height = self._at_one_rate
         return -float(load @ height / (load @ load))
 
     @property
@@ -65,8 +74,7 @@ class Bearing:
     @property
     def weight(self) -> float:
         """What it tells of the slope: 1 over the square of its error [N^2/m^2]."""
-        height = _without(self.height, self.sink)
-        load = _without(self.load, self.sink)
+        load, height = self._at_one_rate
         left = height + self.slope * load
         return float(load @ load / max(np.mean(left**2), FINEST**2))
 
@@ -235,9 +243,3 @@ def _half(pad: Bearing, late: bool, rules: GroundRules) -> Bearing | None:
     part = slice(len(pad.load) // 2, None) if late else slice(len(pad.load) // 2)
     half = pad.cut(part)
     return half if float(half.load.std()) >= rules.loads else None
-
-
-def _without(values: np.ndarray, sink: np.ndarray) -> np.ndarray:
-    """Values about their mean, without what goes with the rate of sinking `(k,)`."""
-    beside = np.stack([np.ones_like(sink), sink], 1)
-    return np.asarray(values - beside @ np.linalg.lstsq(beside, values, rcond=None)[0])
