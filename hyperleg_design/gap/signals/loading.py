@@ -115,6 +115,13 @@ def _check_names(log: Log, subject: Subject) -> None:
     for joint in log.metadata.gains:
         if joint not in subject.unlogged:
             index_of(joint, subject.joints, f"{log.name}: gains", "joint")
+    for joint in log.metadata.torque_sensors:
+        index_of(
+            joint, (*subject.joints, *subject.unlogged), f"{log.name}: torque_sensors", "joint"
+        )
+    for field in ("torque_constant", "supply"):
+        for motor in getattr(log.metadata, field):
+            motor_index(subject, motor, f"{log.name}: {field}")
     motors = {*subject.motors, *subject.motor_aliases, *subject.unlogged}
     for motor in log.motors:
         if motor not in motors and subject.unlogged:

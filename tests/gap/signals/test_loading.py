@@ -63,6 +63,16 @@ def test_named_in_the_metadata_only(robot_files):
         ("hyperleg", [log_of(["left_knee"], gains={"left_neck": (1.0, 1.0)})], "is no joint"),
         (
             "hyperleg",
+            [log_of(["left_knee"], torque_sensors=("left_neck",))],
+            r"some: torque_sensors = 'left_neck': is no joint",
+        ),
+        (
+            "hyperleg",
+            [log_of(["left_knee"], torque_constant={"neck": 0.1})],
+            r"some: torque_constant = 'neck': is no motor",
+        ),
+        (
+            "hyperleg",
             [log_of(["left_knee"], payload={"left_hat": (1.0, 0.0, 0.0, 0.0)})],
             "no such moving link",
         ),
