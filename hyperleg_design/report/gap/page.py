@@ -12,6 +12,7 @@ import numpy as np
 
 from hyperleg_design import provenance
 from hyperleg_design.gap.effects import effect
+from hyperleg_design.gap.pipeline.detected_causes import APART
 from hyperleg_design.gap.playback.evidence import Evidence, evidence
 from hyperleg_design.gap.playback.sheets import root_mean_square
 from hyperleg_design.gap.signals.signals import Signals
@@ -76,7 +77,14 @@ def write_gap_page(
     shown = [evidence(log, causes, residual_name, standing) for log in signals]
     # joints that stand all the time show nothing
     shown = [part for part in shown if np.isfinite(part.before).any()]
-    left = hints(diagnosis.get("residual_shape", ()), shown)
+    shapes = diagnosis.get("residual_shape", ())
+    left = hints(shapes, shown)
+    if not causes:
+        below = left[1:3]  # the first one stands in the lead
+    elif diagnosis.get("remainder"):
+        below = left
+    else:
+        below = hints([shape for shape in shapes if shape["shape"] in APART], shown)
     what = "what the causes predict and what is left" if causes else "no cause is named"
     if standing:
         what = f"beyond what the references show, {what}"
@@ -90,7 +98,7 @@ def write_gap_page(
         **_where(diagnosis, signals),
         **_bars(diagnosis),
         "causes": [cause_row(*group) for group in together(causes)],
-        "remainder": left if causes and diagnosis.get("remainder") else left[1:3] if left else [],
+        "remainder": below,
         "trace": [] if verdict == "none" else first,
         "rivals_title": "Nearest explanations" if verdict == "unknown" else "What else was tried",
         "rivals": [] if verdict == "none" else [_brief(rival) for rival in rivals[:MOST_RIVALS]],

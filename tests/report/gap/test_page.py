@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hyperleg_design.gap.inference.detectors.sinking import SINKS
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.signals.conditioning import condition
@@ -143,6 +144,17 @@ def test_a_remainder_and_what_references_lack_stand_below_the_verdict(
     assert "The reference log monday differs from the others by Coulomb friction" in text
     assert "18 % of the gap is left that no effect of the catalogue explains." in text
     assert "The reference logs already show what the model lacks: Coulomb friction" in text
+
+
+def test_every_foot_that_sinks_stands_below_the_causes(tmp_path: Path, signals) -> None:
+    feet = [
+        {"shape": SINKS, "location": foot, "says": "sinks by 4 mm", "closed_beyond": 0.9}
+        for foot in ("front", "middle", "rear")
+    ]
+    text = written(tmp_path, diagnosis("explained", causes=[CAUSE], residual_shape=feet), signals)
+    causes = text[: text.index("What is left")]
+    for foot in feet:
+        assert f"{foot['location']} sinks by 4 mm." in causes
 
 
 def test_the_robot_is_coloured_by_shares_of_the_whole_gap_and_regimes_are_of_their_own_place(
