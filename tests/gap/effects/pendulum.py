@@ -40,6 +40,8 @@ class Wrong:
     stribeck_speed: float = 0.1
     share: float = 0.0
     viscous: float = 0.0
+    rotor_viscous: float = 0.0
+    """Of the rotor of a drive that gives or has play."""
     constant: float = 1.0
     limit: float = math.inf
     derating: float = 0.0
@@ -149,7 +151,7 @@ def run(
             bent = angle - q
             free = max(-wrong.play / 2, min(wrong.play / 2, bent))
             load = stiff * (bent - free) + (belt_damping * (speed - v) if bent != free else 0.0)
-            speed += STEP * (torque - load) / rotor
+            speed += STEP * (torque - load - wrong.rotor_viscous * speed) / rotor
             angle += STEP * speed
         elif wrong.share:
             # what reaches the joint of a rigid drive: less what turns the rotor

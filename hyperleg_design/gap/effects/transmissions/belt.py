@@ -38,7 +38,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.gap.effects.placing import at_motor, motor_velocity
+from hyperleg_design.gap.effects.placing import at_motor
 from hyperleg_design.gap.effects.series import (
     band_limited,
     first_derivative,
@@ -112,27 +112,6 @@ def _friction(signals: Signals, motor: int) -> np.ndarray:
 
 
 @memoized
-def transmitted(signals: Signals, motor: int) -> np.ndarray:
-    """Torque that a motor gives its belt, its own torque less what its rotor takes, where its speed
-    is logged; else `load` `(t,)` [Nm].
-
-    Args:
-        signals: a conditioned log, `t` ticks.
-        motor: index of the motor.
-
-    Returns:
-        The torque `(t,)` [Nm].
-    """
-    if (
-        "transmission" not in signals.residual
-        or not np.isfinite(signals.residual["transmission"][:, motor]).any()
-    ):
-        return load(signals, motor)
-    spin = signals.residual["transmission"][:, motor] + motor_velocity(signals, motor)
-    return _passed_on(signals, motor, first_derivative(spin, signals.step), BAND / signals.step)
-
-
-@memoized
 def given(signals: Signals, motor: int, *, rubs: bool = True) -> np.ndarray:
     """Torque that a motor gives its belt, where positions are those of the rotors.
 
@@ -189,7 +168,7 @@ def stretch(
 
     Args:
         signals: a conditioned log.
-        through: torque through the belt `(t,)` [Nm]: `load`, or `transmitted`.
+        through: torque through the belt `(t,)` [Nm].
         motor: place of the motor.
         compliance: `(k,)` [rad/Nm].
         damping_ratio: of the rotor on its belt `(k,)`.
@@ -226,7 +205,6 @@ def trace(
     motor: int,
     moved: np.ndarray,
     side: np.ndarray,
-    seen: np.ndarray | None = None,
     behind: np.ndarray | None = None,
 ) -> dict[str, np.ndarray]:
     """Compute what a stretch of the belt leaves in the residuals of motion and transmission, by the
@@ -237,15 +215,13 @@ def trace(
         motor: place of the motor.
         moved: stretch `(k, t)` [rad].
         side: on which the positions were logged `(k,)`.
-        seen: stretch in the residual of transmission, as the rotor's side tells it `(k, t)` [rad];
-            by default the same.
         behind: whether joints rub behind the belt, with positions logged on side 1 `(k,)`; by
             default not.
     """
     at_joints = 1 - side[:, None]
     inertia = at_joints * rotor(signals.subject, motor)
     residual = at_motor(signals, motor, inertia * second_derivative(moved, signals.step))
-    stretch_rate = first_derivative(moved if seen is None else seen, signals.step)
+    stretch_rate = first_derivative(moved, signals.step)
     residual |= turned(signals, motor, at_joints * stretch_rate)
     if side.any():
         subject = signals.subject

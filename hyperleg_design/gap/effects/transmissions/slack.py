@@ -12,6 +12,7 @@ from hyperleg_design.gap.effects.transmissions.belt import (
     frictionless,
     load,
 )
+from hyperleg_design.gap.effects.transmissions.crossing import crossed
 from hyperleg_design.gap.model.machine import rotor
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import dry_friction
@@ -51,6 +52,9 @@ def slack(
         if width <= 0:
             continue
         at_rotor = bool(side[row] >= CHOSEN)
+        if not at_rotor and (seen := crossed(signals, motor)) is not None:
+            position[row] = width * seen
+            continue
         free = 1.0 if at_rotor else float(coasting[row])
         if free > 0:
             beyond = 0.0 if behind is None else float(behind[row])

@@ -83,7 +83,7 @@ class TransmissionElasticity(GearEffect):
     @override
     def _left(self, signals: Signals, motor: int, *values: Any) -> dict[str, np.ndarray]:
         compliance, damping_ratio, side, behind, stiffening = values
-        load, transmitted = belt.load(signals, motor), belt.transmitted(signals, motor)
+        load = belt.load(signals, motor)
         at_rotor, bent = side >= belt.CHOSEN, (stiffening > 0) | (behind >= belt.CHOSEN)
         moved = belt.stretch(
             signals, load, motor, compliance, damping_ratio, stiffening, at_rotor & ~bent
@@ -97,10 +97,11 @@ class TransmissionElasticity(GearEffect):
                     motor,
                     *(v[mine] for v in (compliance, damping_ratio, stiffening)),
                 )
-        seen = None
-        if transmitted is not load:
-            seen = belt.stretch(signals, transmitted, motor, compliance, damping_ratio, stiffening)
-        return belt.trace(signals, motor, moved, side, seen, behind)
+        before = np.where(at_rotor, 0.0, 1 - behind)[:, None]
+        if before.any():
+            rubbed = load - belt.frictionless(signals, motor)
+            moved -= before * belt.stretch(signals, rubbed, motor, compliance, damping_ratio)
+        return belt.trace(signals, motor, moved, side, behind)
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
@@ -129,11 +130,16 @@ class TransmissionElasticity(GearEffect):
 
     @override
     def fixed(self, values: np.ndarray) -> np.ndarray:
-        """Where joints rub; of a belt that stiffens, or with joints that rub behind it, where
+        """Of a belt that stiffens, and with encoders at the rotors, where joints rub, and where
         encoders sit; else it is straight.
         """
-        behind, stiffens = values[3] >= belt.CHOSEN, values[4] > 0
-        return np.array([False, False, behind or stiffens, True, not (behind or stiffens)])
+        at_rotors, behind, stiffens = (
+            values[SIDE] >= belt.CHOSEN,
+            values[3] >= belt.CHOSEN,
+            values[4] > 0,
+        )
+        bent = stiffens or (at_rotors and behind)
+        return np.array([False, False, bent, at_rotors or stiffens, not bent])
 
     @override
     def starts(self, signals: Signals, location: str) -> np.ndarray:
@@ -144,7 +150,9 @@ class TransmissionElasticity(GearEffect):
         motor = signals.subject.motors.index(location)
         over = belt.carried(signals, motor).mean() / machine.rotor(signals.subject, motor)
         damped = min(SWING_DAMPING * np.sqrt(over), 1.0)
-        plain = [[c, DAMPING_RATIO, 0.0, 0.0, 0.0] for c in stiff] + [
+        plain = [[c, DAMPING_RATIO, 0.0, 1.0, 0.0] for c in stiff]
+        plain += [[c, DAMPING_RATIO, 0.0, 0.0, 0.0] for c in stiff[1:3]]
+        plain += [
             [self._compliance(f, location, signals.subject) / over, damped, 1.0, 0.0, 0.0]
             for f in SWINGS
         ]
