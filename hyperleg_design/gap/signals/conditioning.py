@@ -283,7 +283,11 @@ def _command(
         damper = -damping * speed
         spring[:, subject.passive] = half[:, subject.passive] = damper[:, subject.passive] = 0.0
         if np.isfinite(logged).any():
-            residual, others = control_residual(subject, logged, spring, damper)
+            of_rotors = None
+            if subject.one_to_one:
+                spin = of_motors(log, "motor_velocity", subject)
+                of_rotors = -damping * spin
+            residual, others = control_residual(subject, logged, spring, damper, of_rotors)
             control = resampled_or_none(log.time, residual, ticks)
         supplied = over_nominal(subject, log.column("battery_voltage"))
         asked = supplied * applied(subject.motor_from_joint, spring - half) + applied(

@@ -7,6 +7,8 @@ gravity compensation) ask for torques that gains do not explain.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from hyperleg_design.gap.model.subject import Subject
@@ -21,7 +23,11 @@ HELD = 1e-3
 
 
 def control_residual(
-    subject: Subject, logged: np.ndarray, spring: np.ndarray, damper: np.ndarray
+    subject: Subject,
+    logged: np.ndarray,
+    spring: np.ndarray,
+    damper: np.ndarray,
+    damper_of_rotors: np.ndarray | None = None,
 ) -> tuple[np.ndarray, tuple[str, ...]]:
     """Logged command minus the one of the declared gains `(s, m)` [Nm]; NaN where it is unknown, as
     where a command is held at the motor's limit.
@@ -31,6 +37,8 @@ def control_residual(
         logged: motor torque commands `(s, m)` [Nm], NaN where unknown.
         spring: stiffness (target - position) of the joints `(s, n)` [Nm].
         damper: -damping velocity of the joints `(s, n)` [Nm].
+        damper_of_rotors: the same of the speeds that the rotors give the joints, NaN where unknown.
+            Of a controller that damps rotors it leaves less.
 
     Returns:
         The residual, and the motors whose controllers have another form.
@@ -39,9 +47,12 @@ def control_residual(
     for motor, name in enumerate(subject.motors):
         share = subject.motor_from_joint[motor]
         joints = np.flatnonzero(share)
-        terms = np.concatenate([spring[:, joints], damper[:, joints]], 1) * np.tile(
-            share[joints], 2
-        )
+        ways = [
+            np.concatenate([spring[:, joints], own[:, joints]], 1) * np.tile(share[joints], 2)
+            for own in (damper, damper_of_rotors)
+            if own is not None
+        ]
+        terms = min(ways, key=partial(_leaves, logged[:, motor]))
         limit = float(subject.torque_limit[motor])
         held = np.abs(np.abs(logged[:, motor]) - limit) < HELD * limit
         known = np.isfinite(logged[:, motor]) & np.isfinite(terms).all(1) & ~held
@@ -55,3 +66,12 @@ def control_residual(
             continue
         residual[known, motor] = logged[known, motor] - terms[known].sum(1)
     return residual, tuple(others)
+
+
+def _leaves(logged: np.ndarray, terms: np.ndarray) -> float:
+    """Variance of a command that is left beside terms `(s, k)` [Nm^2]; infinite where these are not
+    known.
+    """
+    left = logged - terms.sum(1)
+    known = np.isfinite(left)
+    return float(np.var(left[known])) if known.sum() >= FEWEST else np.inf

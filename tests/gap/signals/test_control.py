@@ -42,6 +42,20 @@ def test_commands_that_a_limit_holds_say_nothing_of_gains():
     np.testing.assert_allclose(found, np.where(np.isnan(found), np.nan, 0.6 / 1.6 * asked))
 
 
+def test_controllers_that_damp_rotors_are_held_against_the_speeds_of_these():
+    of_rotors = DAMPER + 0.3 * RNG.normal(size=DAMPER.shape)
+    for damps in (DAMPER, of_rotors):
+        logged = (SPRING + damps) @ SUBJECT.motor_from_joint.T
+        found, others = control_residual(SUBJECT, logged, SPRING, DAMPER, of_rotors)
+        np.testing.assert_allclose(found, 0, atol=1e-12)
+        assert others == ()
+    unknown = np.full_like(DAMPER, np.nan)
+    found, _ = control_residual(
+        SUBJECT, (SPRING + DAMPER) @ SUBJECT.motor_from_joint.T, SPRING, DAMPER, unknown
+    )
+    np.testing.assert_allclose(found, 0, atol=1e-12)
+
+
 def test_of_controllers_of_another_form_nothing_is_said():
     logged = (SPRING + DAMPER) @ SUBJECT.motor_from_joint.T
     logged[:, 1] += RNG.normal(size=500)
