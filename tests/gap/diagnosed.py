@@ -96,6 +96,18 @@ def stamped_badly(seed: int):
     )
 
 
+def soft_servos(seed: int, share: float = 0.75):
+    """Targets, positions and torques of two servos, both softer than they declare."""
+    text = robots.SERVOS
+    for gain in (200, 120):
+        text = text.replace(f'kp="{gain}"', f'kp="{share * gain:g}"')
+    log = robots.servo_run(text, robots.waves(2, [0.6, 0.8], seed=seed), 12.0)
+    noise = np.random.default_rng([9, seed])
+    signals = {c: v + noise.normal(0, 2e-5, len(v)) for c, v in log.signals.items()}
+    log = log.changed(signals=signals, name=f"soft_{share:g}_{seed}")
+    return robots.without(log, "velocity", "motor_torque")
+
+
 def conditioned(robot, *logs):
     """Signals of logs of one robot."""
     subject = load_subject(robot, logs)

@@ -141,8 +141,10 @@ class SearchRules:
     """Gauss-Newton steps of a start [-]."""
     least: float = 0.0
     """Least predicted gain of a cause that is fitted [nat] (assumed)."""
-    groups: int = 2
+    groups: int = 4
     """Effects that are tried at all of their places at once in one step [-]."""
+    bent: int = 2
+    """Nonlinear effects among them whose gain there is computed [-]."""
     pairs: int = 2
     """Rivals at the place of a cause beside which a second one is tried there [-]."""
     rounds: int = 12

@@ -11,12 +11,13 @@ from hyperleg_design.gap.inference.assembly import evidence_of
 from hyperleg_design.gap.inference.cross_validation import predicted
 from hyperleg_design.gap.inference.detectable import detectable
 from hyperleg_design.gap.inference.gap_size import GapSize
+from hyperleg_design.gap.inference.hypotheses.hypothesis import Hypothesis
 from hyperleg_design.gap.inference.hypotheses.reference_differences import (
     FEWEST,
     Difference,
     differences,
 )
-from hyperleg_design.gap.inference.hypotheses.search import Result, Search
+from hyperleg_design.gap.inference.hypotheses.search import Search
 from hyperleg_design.gap.inference.posterior import changes_first, posterior_of
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline.answer import Answer
@@ -51,20 +52,22 @@ def judge_signals(
         The diagnosis.
     """
     say = show or (lambda _: None)
-    search, result = _searched(signals, references, places, rules, threads, say)
+    search = Search(evidence_of(signals, references, rules), rules, places, threads, say)
+    result = search.result(rivals=False)
     apart: list[Difference] = []
     while len(apart) < len(references) - 1 and (odd := differences(search, result)):
         say("one reference differs from the others: searching again without what it has")
-        # of two references that differ, either may be wrong: try both, and take the one without
-        # which the causes under test gain less
-        tried = [
-            (difference, *_searched(signals, mended, places, rules, threads, say))
-            for difference in (odd if len(references) == FEWEST else odd[:1])
-            for mended in [difference.taken_out(references)]
-        ]
-        difference, search, result = min(tried, key=lambda entry: _gain(*entry[1:]))
-        references = search.evidence.references
+        tried = []
+        for difference in odd if len(references) == FEWEST else odd[:1]:
+            own = evidence_of(signals, difference.taken_out(references), rules)
+            other = Search(own, rules, places, threads, say, search.traces)
+            tried.append((difference, other, other.begun_like(result.best)))
+        # of two references that differ, either may be wrong: take the one without which the causes
+        # under test gain less
+        difference, search, begun = min(tried, key=lambda entry: _gain(*entry[1:]))
+        result, references = search.result(begun, rivals=False), search.evidence.references
         apart.append(difference)
+    result = search.result(result.best)
     evidence, result = search.evidence, changes_first(result, rules)
     held = predicted(evidence, result.best, rules)
     size = GapSize.of(evidence, result.best, held, rules)
@@ -76,18 +79,6 @@ def judge_signals(
     return answer.diagnosis(checks, sensitivity)
 
 
-def _searched(
-    signals: Sequence[Signals],
-    references: Sequence[Signals],
-    places: Sequence[tuple[str, str]],
-    rules: InferenceRules,
-    threads: int,
-    say: Callable[[str], None],
-) -> tuple[Search, Result]:
-    search = Search(evidence_of(signals, references, rules), rules, places, threads, say)
-    return search, search.result()
-
-
-def _gain(search: Search, result: Result) -> float:
-    """What the causes gain over none [nat]."""
-    return result.best.score - search.fits.null.score
+def _gain(search: Search, hypothesis: Hypothesis) -> float:
+    """What a hypothesis gains over the null hypothesis [nat]."""
+    return hypothesis.score - search.fits.null.score

@@ -31,12 +31,13 @@ def within_bounds(
         return phi if ((phi >= low) & (phi <= high)).all() else _within(matrix, right, low, high)
     phi = np.where(free, 0.0, low)
     if free.any():
-        inner = matrix[np.ix_(free, free)]
-        rest = right[free] - matrix[np.ix_(free, ~free)] @ phi[~free]
+        own, others = np.flatnonzero(free), np.flatnonzero(~free)
+        inner = matrix[own[:, None], own]
+        rest = right[own] - matrix[own[:, None], others] @ phi[others]
         inner_phi = np.linalg.solve(inner, rest)
-        if (inner_phi < low[free]).any() or (inner_phi > high[free]).any():
-            inner_phi = _within(inner, rest, low[free], high[free])
-        phi[free] = inner_phi
+        if (inner_phi < low[own]).any() or (inner_phi > high[own]).any():
+            inner_phi = _within(inner, rest, low[own], high[own])
+        phi[own] = inner_phi
     return phi
 
 
@@ -52,8 +53,9 @@ def _within(matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.nda
         held = below | above
         phi, free = np.where(below, low, high), ~held
         if free.any():
-            rest = right[free] - matrix[np.ix_(free, held)] @ phi[held]
-            phi[free] = np.linalg.solve(matrix[np.ix_(free, free)], rest)
+            own, others = np.flatnonzero(free), np.flatnonzero(held)
+            rest = right[own] - matrix[own[:, None], others] @ phi[others]
+            phi[own] = np.linalg.solve(matrix[own[:, None], own], rest)
         slope = right - matrix @ phi
         before = below, above
         below = (free & (phi < low)) | (below & (slope < 0))

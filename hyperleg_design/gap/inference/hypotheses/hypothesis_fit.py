@@ -95,13 +95,16 @@ class HypothesisFit:
         channels = zip(self.evidence.channels, self.null.scales, strict=True)
         return np.array([each.log_posterior(scales, self.rules) for each, scales in channels])
 
-    def candidate(self, proposal: Proposal, current: Hypothesis) -> Candidate | None:
+    def candidate(
+        self, proposal: Proposal, current: Hypothesis, steps: int | None = None
+    ) -> Candidate | None:
         """Linearise an effect where it fits best beside a hypothesis, by Gauss-Newton steps at
         fixed scales, halved where they lead to worse.
 
         Args:
             proposal: the effect, its place, and where the steps begin.
             current: the hypothesis.
+            steps: most steps; `SearchRules.steps` by default.
 
         Returns:
             The candidate; None where no log shows it.
@@ -119,7 +122,7 @@ class HypothesisFit:
         others = acting_on(effect, proposal.standing, current.acting)
         samples = self.beside(effect, everywhere, others)
         best: tuple[float, Cause] | None = None
-        for _ in range(self.rules.search.steps):
+        for _ in range(steps or self.rules.search.steps):
             cause = linearise(samples, effect, proposal.location, values)
             if cause is None:
                 break

@@ -41,6 +41,31 @@ def relinearised(fits: HypothesisFit, hypothesis: Hypothesis) -> Hypothesis:
     return max(agreed, key=lambda hypothesis: hypothesis.score)
 
 
+def on_other_evidence(fits: HypothesisFit, hypothesis: Hypothesis) -> Hypothesis:
+    """Fit the causes of a hypothesis to other evidence, linearised at their estimates.
+
+    Args:
+        fits: to the evidence.
+        hypothesis: fitted to evidence whose residuals alone are others.
+
+    Returns:
+        The hypothesis, without the causes that this evidence does not show.
+    """
+    candidates, acting = [], iter(hypothesis.acting)
+    for candidate in hypothesis.candidates:
+        causes = []
+        for cause, own in zip(candidate.causes, acting, strict=False):
+            effect = WEIGHED[cause.effect]
+            samples = fits.beside(effect, cause.standing, ())
+            if (again := linearise(samples, effect, cause.location, own.values)) is not None:
+                causes.append(_instead(fits, cause, again, ()))
+        if causes:
+            candidates.append(replace(candidate, causes=tuple(causes)))
+    if not candidates:
+        return fits.null
+    return relinearised(fits, fits.fit(candidates, hypothesis.scales))
+
+
 def _agreed(fits: HypothesisFit, hypothesis: Hypothesis) -> Hypothesis:
     """A hypothesis that is fitted to causes linearised at their estimates, by steps that are
     halved where they lead to worse.

@@ -10,11 +10,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
+from hyperleg_design.gap.effects.kinds import JointEffect, MotorEffect
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.effect_traces import NotJudged, traces_of
+from hyperleg_design.gap.inference.effect_traces import NotJudged, Traces, traces_of
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypotheses.cause_prior import log_chance
 from hyperleg_design.gap.inference.hypotheses.hypothesis import (
@@ -27,7 +28,7 @@ from hyperleg_design.gap.inference.hypotheses.hypothesis import (
 from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit, are_near
 from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
 from hyperleg_design.gap.inference.hypotheses.proposals import Proposal, Proposer
-from hyperleg_design.gap.inference.hypotheses.relinearisation import relinearised
+from hyperleg_design.gap.inference.hypotheses.relinearisation import on_other_evidence, relinearised
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.threads import spread
 
@@ -54,6 +55,7 @@ class Search:
         places: effects and locations that are tried.
         threads: that share the work; they change no result.
         show: takes lines of progress.
+        traces: of the effects, of a search on logs that differ in residuals alone.
     """
 
     def __init__(
@@ -63,11 +65,12 @@ class Search:
         places: Sequence[tuple[str, str]],
         threads: int = 1,
         show: Callable[[str], None] | None = None,
+        traces: dict[Name, Traces] | None = None,
     ) -> None:
         self.show = show or (lambda _: None)
         self.evidence, self.rules, self.threads = evidence, rules, threads
         self.count = {name: sum(e == name for e, _ in places) for name, _ in places}
-        self.traces = traces_of(evidence, places, threads)
+        self.traces = traces_of(evidence, places, threads) if traces is None else traces
         self.fits = HypothesisFit(evidence, rules, self.traces, self.count, threads)
         self.proposer = Proposer(evidence, rules, self.traces, threads)
         self.fitted: dict[tuple[Name, ...], Hypothesis] = {(): self.fits.null}
@@ -77,11 +80,19 @@ class Search:
         the predicted change of the score that would have been enough, and the score of the
         hypothesis beside which they were fitted [nat]."""
 
-    def result(self) -> Result:
+    def result(self, begun: Hypothesis | None = None, rivals: bool = True) -> Result:
         """Search forward until no further cause is worth its prior, drop what is not, and put
         others in the place of each.
+
+        Args:
+            begun: the hypothesis that the search begins with; none by default.
+            rivals: whether the causes of the best hypothesis are compared with all rivals at their
+                places, which takes half of the time.
+
+        Returns:
+            The hypotheses that were fitted.
         """
-        current = self.fits.null
+        current = begun or self.fits.null
         smaller: list[Hypothesis] = []
         while True:
             best = self._improved(self.extended(current), current)
@@ -89,9 +100,9 @@ class Search:
                 smaller = smaller or self._each_removed(current)
                 for removed, rest in zip(current.candidates, smaller, strict=True):
                     best = self._improved(self.extended(rest, removed), best)
-            if best is current:
+            if best is current and rivals:
                 best = self._with_rivals_at_each_place(current)
-            if best is current:
+            if best is current and rivals:
                 best = self._without_unlisted(current)
             if best is current:
                 break
@@ -107,6 +118,24 @@ class Search:
             if isinstance(traced, NotJudged) and not standing
         )
         return Result(tuple(ranked), missing)
+
+    def begun_like(self, similar: Hypothesis) -> Hypothesis:
+        """Fit the causes of a hypothesis on about the same evidence, and drop what is not worth its
+        prior.
+
+        Args:
+            similar: the best hypothesis on the other evidence.
+
+        Returns:
+            The best hypothesis of some or all of these causes.
+        """
+        best = self._improved([on_other_evidence(self.fits, similar)], self.fits.null)
+        while best.candidates:
+            smaller = self._improved(self._each_removed(best), best)
+            if smaller is best:
+                break
+            best = smaller
+        return best
 
     def _improved(self, others: Sequence[Hypothesis], current: Hypothesis) -> Hypothesis:
         """The best of a current hypothesis and others. Others with a larger score are linearised
@@ -299,8 +328,8 @@ class Search:
     def at_all_places(
         self, proposals: Mapping[Name, Sequence[Proposal]], current: Hypothesis
     ) -> list[tuple[float, Candidate]]:
-        """Join linear effects at all of their places, and compute what they gain beside a
-        hypothesis at its scales.
+        """Join linear effects, and the most promising nonlinear ones, at all of their places, and
+        compute what they gain beside a hypothesis at its scales.
 
         Args:
             proposals: of effects at single places.
@@ -314,12 +343,8 @@ class Search:
         start, joined_effects = 0.0, []
         if current.causes:
             start = self._gain(current.causes, scales)
-        for effect, standing in sorted({(name[0], name[2]) for name in proposals} - acting):
-            effect_tried = WEIGHED[effect]
-            if not effect_tried.linear or effect_tried.flexible or self.count[effect] < 2:
-                continue
-            own = sorted(name for name in proposals if (name[0], name[2]) == (effect, standing))
-            candidates = [self.fits.candidate(proposals[name][0], current) for name in own]
+        for (effect, _), own in self._joinable(proposals, acting):
+            candidates = [self.fits.candidate(proposals[name][0], current, steps=1) for name in own]
             causes = tuple(
                 without_gain_from_torques(cause)
                 for candidate in candidates
@@ -331,6 +356,30 @@ class Search:
             gain = self._gain((*current.causes, *causes), scales) - start
             joined_effects.append((gain, Candidate(effect, EVERYWHERE, causes)))
         return sorted(joined_effects, key=lambda entry: (-entry[0], *entry[1].name))
+
+    def _joinable(
+        self, proposals: Mapping[Name, Sequence[Proposal]], acting: set[tuple[str, bool]]
+    ) -> list[tuple[tuple[str, bool], list[Name]]]:
+        """Effects that may act at all of their places, and whether in all logs, with the names of
+        their proposals: all linear ones, and of the nonlinear ones of joints and drives those that
+        gain most at single places.
+        """
+        places: dict[tuple[str, bool], list[Name]] = {}
+        for name in sorted(proposals):
+            effect = WEIGHED[name[0]]
+            alike = effect.linear or isinstance(effect, JointEffect | MotorEffect)
+            if effect.flexible or not alike or self.count[name[0]] < 2:
+                continue
+            if (name[0], name[2]) not in acting:
+                places.setdefault((name[0], name[2]), []).append(name)
+        worth = {
+            kind: sum(max(proposals[name][0].gain, 0.0) for name in own)
+            for kind, own in places.items()
+            if not WEIGHED[kind[0]].linear
+        }
+        bent = sorted(worth, key=lambda kind: (-worth[kind], kind))[: self.rules.search.bent]
+        bent = [kind for kind in bent if worth[kind] > 0]
+        return [(kind, own) for kind, own in places.items() if kind in bent or kind not in worth]
 
     def _gain(self, causes: Sequence[Cause], scales: Sequence[Scales]) -> float:
         """What causes gain at fixed scales [nat]."""

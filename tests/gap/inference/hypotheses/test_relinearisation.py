@@ -8,7 +8,7 @@ import pytest
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.inference.hypotheses.hypothesis import Candidate
 from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit
-from hyperleg_design.gap.inference.hypotheses.relinearisation import relinearised
+from hyperleg_design.gap.inference.hypotheses.relinearisation import on_other_evidence, relinearised
 from hyperleg_design.gap.inference.linearisation import linearise
 
 
@@ -24,6 +24,14 @@ def test_a_load_is_the_same_wherever_it_was_linearised(fits, loaded, load):
     assert (
         np.abs(cause.values - settled.values(0)) < fits.rules.search.converged * cause.usual
     ).all()
+
+
+def test_a_hypothesis_of_other_evidence_is_fitted_anew(fits, loaded, load):
+    far = loaded(fits, [0.2, 0.02, 0.0, -0.35, 0.0])
+    moved = on_other_evidence(fits, far)
+    assert moved.names == far.names
+    assert moved.values(0)[0] == pytest.approx(load[0], rel=0.1)
+    assert on_other_evidence(fits, fits.null) is fits.null
 
 
 def test_what_is_linearised_where_it_is_stays_as_it_is(fits, loaded, load):

@@ -89,6 +89,34 @@ def test_a_set_is_no_larger_than_the_rules_allow(search):
     assert found.best.names == (VISCOUS,)
 
 
+def test_gains_of_all_joints_are_one_change(robot_files):
+    """Of a nonlinear effect: several joints with one setting cost the prior of one cause."""
+    evidence = diagnosed.evidence(
+        robot_files["servos"],
+        diagnosed.soft_servos(0),
+        references=(diagnosed.soft_servos(1, share=1.0),),
+    )
+    places = [
+        (effect, joint)
+        for effect in ("controller_gain", "viscous_friction")
+        for joint in ("hip", "knee")
+    ]
+    best = Search(evidence, InferenceRules(), places).result().best
+    assert best.names == (("controller_gain", EVERYWHERE, False),)
+    for place in range(2):
+        assert best.values(place)[0] == pytest.approx(0.75, abs=0.03)
+
+
+def test_a_search_that_begins_with_what_was_found_ends_there_sooner(search, result):
+    places = [name[:2] for name in search.traces]
+    again = Search(search.evidence, search.rules, places, traces=search.traces)
+    begun = again.begun_like(result.best)
+    assert begun.names == result.best.names
+    assert begun.score == pytest.approx(result.best.score, abs=0.5)
+    assert again.result(begun, rivals=False).best.names == result.best.names
+    assert len(again.fitted) < len(search.fitted)
+
+
 def test_what_the_logs_cannot_show_is_not_judged(search):
     places = [("thermal_derating", "m_front"), ("command_delay", "robot"), VISCOUS[:2]]
     traces = traces_of(search.evidence, places, 1)
