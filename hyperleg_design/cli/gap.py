@@ -36,7 +36,7 @@ class Check(Printing):
             SystemExit: with code 2, if a log cannot be used.
         """
         from hyperleg_design.gap.checks.checking import check_sources
-        from hyperleg_design.report.gap.text import checks_text
+        from hyperleg_design.report.gap.checks import checks_text
 
         checks = check_sources(self.logs, robot=self.robot, mapping=self.map, out=self.out)
         self.tell([check.mapping() for check in checks], checks_text(checks))

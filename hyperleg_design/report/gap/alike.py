@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.report.gap.choices import chosen
 
 FEWEST = 3
@@ -143,3 +144,15 @@ def telling(group: Sequence[Mapping[str, Any]]) -> str:
         return effect.telling
     clear = [span for span in sizes if not span.low <= nulls.get(span.name, 0.0) <= span.high]
     return next((span.name for span in (*clear, *sizes)), "")
+
+
+def of_every_day(difference: Mapping[str, Any]) -> str:
+    """Say of a difference between references that it is no fault.
+
+    Args:
+        difference: an element of `reference_differences`.
+
+    Returns:
+        The words; empty where it may be a fault.
+    """
+    return ", as friction does from day to day" if difference["effect"] in FRICTION else ""

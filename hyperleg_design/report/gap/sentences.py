@@ -8,7 +8,14 @@ from typing import Any
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.pipeline.unexplained import HIDING
-from hyperleg_design.report.gap.alike import places, span_text, spans, telling, together
+from hyperleg_design.report.gap.alike import (
+    of_every_day,
+    places,
+    span_text,
+    spans,
+    telling,
+    together,
+)
 from hyperleg_design.report.gap.run import Run
 from hyperleg_design.report.gap.text import beyond_references, lacking
 
@@ -220,7 +227,7 @@ def lead(diagnosis: Entry, left: Sequence[str]) -> list[str]:
     gap, remainder = diagnosis["gap"], diagnosis.get("remainder")
     texts = [
         f"The reference log {difference['log']} differs from the others by "
-        f"{phrase([difference])}, which was taken out of it."
+        f"{phrase([difference])}{of_every_day(difference)}, which was taken out of it."
         for difference in diagnosis.get("reference_differences", ())
     ]
     if diagnosis["causes"]:
