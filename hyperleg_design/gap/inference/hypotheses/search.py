@@ -4,26 +4,21 @@ each place, an effect at all of its places, and sets of them by forward and back
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from hyperleg_design.gap.effects import WEIGHED
-from hyperleg_design.gap.effects.kinds import JointEffect, MotorEffect
 from hyperleg_design.gap.inference.assembly import Evidence
-from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.channels.crossing import Crossing
-from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, Traces, traces_of
-from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypotheses.cause_prior import log_chance
+from hyperleg_design.gap.inference.hypotheses.everywhere import at_all_places
 from hyperleg_design.gap.inference.hypotheses.hypothesis import (
     EVERYWHERE,
     Candidate,
     Hypothesis,
     Name,
-    Stack,
 )
 from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit, are_near
 from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
@@ -238,7 +233,7 @@ class Search:
         if not names:
             return []
         gains = {name: proposals[name][0].gain for name in names}
-        groups = [] if at else self.at_all_places(proposals, current)
+        groups = [] if at else at_all_places(self.fits, proposals, current)
         gains |= {group.name: gain for gain, group in groups}
         least = rules.least
         if instead is not None:
@@ -325,68 +320,6 @@ class Search:
             for a, b in zip(first.causes, second.causes, strict=True)
         )
 
-    def at_all_places(
-        self, proposals: Mapping[Name, Sequence[Proposal]], current: Hypothesis
-    ) -> list[tuple[float, Candidate]]:
-        """Join linear effects, and the most promising nonlinear ones, at all of their places, and
-        compute what they gain beside a hypothesis at its scales.
-
-        Args:
-            proposals: of effects at single places.
-            current: the hypothesis.
-
-        Returns:
-            Gains [nat] and candidates, best first.
-        """
-        scales = limited_scales(self.evidence, current.scales, self.rules)
-        acting = {(candidate.effect, candidate.standing) for candidate in current.candidates}
-        start, joined_effects = 0.0, []
-        if current.causes:
-            start = self._gain(current.causes, scales)
-        for (effect, _), own in self._joinable(proposals, acting):
-            candidates = [self.fits.candidate(proposals[name][0], current, steps=1) for name in own]
-            causes = tuple(
-                without_gain_from_torques(cause)
-                for candidate in candidates
-                if candidate is not None
-                for cause in candidate.causes
-            )
-            if len(causes) < 2:
-                continue
-            gain = self._gain((*current.causes, *causes), scales) - start
-            joined_effects.append((gain, Candidate(effect, EVERYWHERE, causes)))
-        return sorted(joined_effects, key=lambda entry: (-entry[0], *entry[1].name))
-
-    def _joinable(
-        self, proposals: Mapping[Name, Sequence[Proposal]], acting: set[tuple[str, bool]]
-    ) -> list[tuple[tuple[str, bool], list[Name]]]:
-        """Effects that may act at all of their places, and whether in all logs, with the names of
-        their proposals: all linear ones, and of the nonlinear ones of joints and drives those that
-        gain most at single places.
-        """
-        places: dict[tuple[str, bool], list[Name]] = {}
-        for name in sorted(proposals):
-            effect = WEIGHED[name[0]]
-            alike = effect.linear or isinstance(effect, JointEffect | MotorEffect)
-            if effect.flexible or not alike or self.count[name[0]] < 2:
-                continue
-            if (name[0], name[2]) not in acting:
-                places.setdefault((name[0], name[2]), []).append(name)
-        worth = {
-            kind: sum(max(proposals[name][0].gain, 0.0) for name in own)
-            for kind, own in places.items()
-            if not WEIGHED[kind[0]].linear
-        }
-        bent = sorted(worth, key=lambda kind: (-worth[kind], kind))[: self.rules.search.bent]
-        bent = [kind for kind in bent if worth[kind] > 0]
-        return [(kind, own) for kind, own in places.items() if kind in bent or kind not in worth]
-
-    def _gain(self, causes: Sequence[Cause], scales: Sequence[Scales]) -> float:
-        """What causes gain at fixed scales [nat]."""
-        stack = Stack.of(causes, self.evidence.weight)
-        crossing = Crossing.of(self.evidence.channels, stack.rows)
-        return self.fits.at_scales(stack, crossing, scales).gain
-
 
 def _in_words(candidate: Candidate) -> str:
     place = "all places" if candidate.location == EVERYWHERE else candidate.location
@@ -396,23 +329,3 @@ def _in_words(candidate: Candidate) -> str:
 def _names_at_place(proposal: Proposal, current: Hypothesis) -> tuple[Name, ...]:
     """Name of a cause, and those of a hypothesis at the same place."""
     return proposal.name, *(name for name in current.names if name[1] == proposal.location)
-
-
-def without_gain_from_torques(cause: Cause) -> Cause:
-    """Keep a cause from gaining by larger torques.
-
-    Where an effect scales the torques at all of its places, masses and friction may be larger by as
-    much, and the gain would be noise that is nearer to the expected one.
-
-    Args:
-        cause: the effect at one place.
-
-    Returns:
-        The cause, whose terms of the likelihood charge for smaller torques alone.
-    """
-    if not cause.factors:
-        return cause
-    factors = (
-        replace(term, shows=0.0) if isinstance(term, Factor) else term for term in cause.factors
-    )
-    return replace(cause, factors=tuple(factors))

@@ -7,14 +7,12 @@ from itertools import combinations
 from types import SimpleNamespace
 
 import diagnosed
-import numpy as np
 import pytest
 
 from hyperleg_design.gap.inference.effect_traces import NotJudged, traces_of
-from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypotheses import search as looking
 from hyperleg_design.gap.inference.hypotheses.hypothesis import EVERYWHERE, Candidate
-from hyperleg_design.gap.inference.hypotheses.search import Search, without_gain_from_torques
+from hyperleg_design.gap.inference.hypotheses.search import Search
 from hyperleg_design.gap.inference.rules import InferenceRules
 
 VISCOUS, DRY = ("viscous_friction", "knee", False), ("coulomb_friction", "hip", False)
@@ -133,18 +131,6 @@ def test_without_references_nothing_acts_in_them(search):
         for cause in traced:
             assert not cause.standing
             assert cause.columns.shape[1] == len(search.evidence.samples.value)
-
-
-def test_a_cause_that_does_not_gain_by_scaling_torques_is_otherwise_the_same(search):
-    (cause,) = search.traces[VISCOUS]
-    assert without_gain_from_torques(cause) is cause
-    scaling = replace(cause, factors=(Factor(0, np.ones((1, 3)), 50.0),))
-    found = without_gain_from_torques(scaling)
-    assert found.compact is cause.compact
-    sizes = np.linspace(-0.3, 0.3, 7)[:, None]
-    gains = np.array([[one.factors[0].log(size) for size in sizes] for one in (scaling, found)])
-    assert np.abs(gains[0]).max() > 0.1
-    assert (gains[1] <= 1e-12).all()
 
 
 def test_a_cause_that_was_lowered_the_score_is_fitted_again_when_its_predicted_gain_grows(search):
