@@ -161,7 +161,8 @@ class Answer:
             candidate: one of its candidates.
 
         Returns:
-            One cause; of an effect at all of its places, one for each place where it clearly acts.
+            One cause; of an effect at all of its places, one for each place where it clearly acts,
+            the clearest first.
         """
         probability = self.posterior.probability[candidate.name]
         subject = self.evidence.signals[0].subject
@@ -177,10 +178,11 @@ class Answer:
             closed = self.closed_by(hypothesis, place)
             sizes = intervals(cause, values, deviation, subject, self.torque_error)
             sized.append((stands, Named(cause.effect, cause.location, probability, closed, sizes)))
+        sized.sort(key=lambda entry: -entry[0])
         rules = self.rules.posterior
         clear_ones = [named for stands, named in sized if stands >= rules.clear]
         closing = [named for named in clear_ones if named.closed >= rules.least_closed]
-        return closing or clear_ones or [max(sized, key=lambda entry: entry[0])[1]]
+        return closing or clear_ones or [sized[0][1]]
 
     @property
     def torque_error(self) -> float:

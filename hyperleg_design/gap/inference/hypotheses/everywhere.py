@@ -66,13 +66,13 @@ def _joinable(
 ) -> list[tuple[tuple[str, bool], list[Name]]]:
     """Effects that may act at all of their places, and whether in all logs, with the names of
     their proposals: all linear ones, and of the nonlinear ones of joints and drives those that
-    gain most at single places.
+    gain most at single places. Zeros of encoders are not set alike.
     """
     places: dict[tuple[str, bool], list[Name]] = {}
     for name in sorted(proposals):
         effect = WEIGHED[name[0]]
         alike = effect.linear or isinstance(effect, JointEffect | MotorEffect)
-        if effect.flexible or not alike or fits.count[name[0]] < 2:
+        if effect.flexible or effect.of_zeros or not alike or fits.count[name[0]] < 2:
             continue
         if (name[0], name[2]) not in acting:
             places.setdefault((name[0], name[2]), []).append(name)
