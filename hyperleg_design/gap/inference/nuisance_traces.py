@@ -128,7 +128,7 @@ def _speeds(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]
     elif error.effect == TOLD_LATE:
         speed = -signals.acceleration @ subject.joint_from_motor[:, motor]
     else:
-        speed = first_derivative(belt.load(signals, motor), signals.step)
+        speed = first_derivative(belt.transmitted(signals, motor), signals.step)
     return _alone(turned(signals, motor, error.spread * speed[None]))
 
 

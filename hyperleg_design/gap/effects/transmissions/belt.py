@@ -38,7 +38,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.gap.effects.placing import at_motor
+from hyperleg_design.gap.effects.placing import at_motor, motor_velocity
 from hyperleg_design.gap.effects.series import (
     band_limited,
     first_derivative,
@@ -109,6 +109,27 @@ def _friction(signals: Signals, motor: int) -> np.ndarray:
         subject.motor_from_joint[motor : motor + 1],
         friction.rubbing_torque(subject, signals.velocity, swing),
     )[:, 0]
+
+
+@memoized
+def transmitted(signals: Signals, motor: int) -> np.ndarray:
+    """Torque that a motor gives its belt, its own torque less what its rotor takes, where its speed
+    is logged; else `load` `(t,)` [Nm].
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The torque `(t,)` [Nm].
+    """
+    if (
+        "transmission" not in signals.residual
+        or not np.isfinite(signals.residual["transmission"][:, motor]).any()
+    ):
+        return load(signals, motor)
+    spin = signals.residual["transmission"][:, motor] + motor_velocity(signals, motor)
+    return _passed_on(signals, motor, first_derivative(spin, signals.step), BAND / signals.step)
 
 
 @memoized

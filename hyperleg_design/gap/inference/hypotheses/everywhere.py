@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from hyperleg_design.gap.effects import WEIGHED
+from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.kinds import JointEffect, MotorEffect
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.crossing import Crossing
@@ -66,13 +67,12 @@ def _joinable(
 ) -> list[tuple[tuple[str, bool], list[Name]]]:
     """Effects that may act at all of their places, and whether in all logs, with the names of
     their proposals: all linear ones, and of the nonlinear ones of joints and drives those that
-    gain most at single places. Zeros of encoders are not set alike.
+    gain most at single places.
     """
     places: dict[tuple[str, bool], list[Name]] = {}
     for name in sorted(proposals):
         effect = WEIGHED[name[0]]
-        alike = effect.linear or isinstance(effect, JointEffect | MotorEffect)
-        if effect.flexible or effect.of_zeros or not alike or fits.count[name[0]] < 2:
+        if effect.flexible or fits.count[name[0]] < 2 or not _alike(effect, name[2]):
             continue
         if (name[0], name[2]) not in acting:
             places.setdefault((name[0], name[2]), []).append(name)
@@ -84,6 +84,16 @@ def _joinable(
     bent = sorted(worth, key=lambda kind: (-worth[kind], kind))[: fits.rules.search.bent]
     bent = [kind for kind in bent if worth[kind] > 0]
     return [(kind, own) for kind, own in places.items() if kind in bent or kind not in worth]
+
+
+def _alike(effect: Effect, standing: bool) -> bool:
+    """Whether an effect acts at all of its places alike: zeros of encoders do not, and belts and
+    gears may be built so, but do not become so.
+    """
+    if effect.linear:
+        return True
+    of_joints = isinstance(effect, JointEffect | MotorEffect) and not effect.of_zeros
+    return of_joints and (standing or not effect.built)
 
 
 def _gain(fits: HypothesisFit, causes: Sequence[Cause], scales: Sequence[Scales]) -> float:

@@ -75,3 +75,19 @@ def test_side_one_is_another_posture(pendulum):
     )
     np.testing.assert_allclose(found, expected, atol=1e-6)
     assert np.abs(belt.trace(signals, 0, moved, np.zeros(1))["motion"]).max() < 1e-9
+
+
+def test_a_rotors_own_speed_tells_what_it_gives_its_belt(pendulum):
+    wrong, sees = Wrong(compliance=0.01), ("motor_torque", "motor_velocity")
+    blind, seeing = pendulum(wrong, gains=(8.0, 0.3)), pendulum(wrong, gains=(8.0, 0.3), sees=sees)
+    assert belt.transmitted(blind, 0) is belt.load(blind, 0)
+    stretched = np.cumsum(seeing.residual["transmission"][:, 0]) * seeing.step
+    away = slice(100, -100)
+    through, needed = (
+        values[away] - values[away].mean()
+        for values in (belt.transmitted(seeing, 0), belt.load(seeing, 0))
+    )
+    stretched = stretched[away] - stretched[away].mean()
+    # compliance is what relates the two, all along
+    assert np.std(stretched - 0.01 * through) < 0.1 * np.std(stretched)
+    assert np.std(stretched - 0.01 * through) < np.std(stretched - 0.01 * needed)
