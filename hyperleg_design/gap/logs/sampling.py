@@ -10,6 +10,8 @@ import numpy as np
 
 from hyperleg_design.gap.logs.log import Log
 
+OF_MEDIAN = 1.4826
+"""Standard deviation of normal noise over its median deviation [-] (derived)."""
 DROPOUT = 2.5
 """Steps from which the time between two rows is a dropout."""
 SATURATION_RATIO = 5.0
@@ -85,7 +87,7 @@ def sampling_of(time: np.ndarray) -> Sampling:
     steps = np.diff(time)
     step = float(np.median(steps))
     usual = steps[steps <= DROPOUT * step]
-    spread = 1.4826 * float(np.median(np.abs(usual - np.median(usual)))) if len(usual) else 0.0
+    spread = OF_MEDIAN * float(np.median(np.abs(usual - np.median(usual)))) if len(usual) else 0.0
     lost = float(np.maximum(steps[steps > DROPOUT * step] - step, 0).sum() / (time[-1] - time[0]))
     return Sampling(
         len(time), float(time[-1] - time[0]), step, spread / step, lost, float(steps.max())
@@ -174,7 +176,7 @@ def noise(values: np.ndarray) -> float:
     if len(values) < 8:
         return 0.0
     third = np.diff(values, 3)
-    spread = 1.4826 * float(np.median(np.abs(third - np.median(third))))
+    spread = OF_MEDIAN * float(np.median(np.abs(third - np.median(third))))
     if spread == 0:  # mostly at rest on one level
         spread = float(third.std())
     return spread / float(np.sqrt(_THIRD_DIFFERENCE))

@@ -73,3 +73,19 @@ def turned(signals: Signals, motor: int, speed: np.ndarray) -> dict[str, np.ndar
     rows = np.zeros((*speed.shape, len(signals.subject.motors)))
     rows[..., motor] = speed
     return {"transmission": rows}
+
+
+def against_joints(signals: Signals, motor: int) -> np.ndarray | None:
+    """Look up the logged speed of a motor less that of its joints' motion.
+
+    Args:
+        signals: conditioned log.
+        motor: index of the motor.
+
+    Returns:
+        `(t,)` [rad/s], NaN where unknown; None where it is not logged.
+    """
+    residual = signals.residual.get("transmission")
+    if residual is None or not np.isfinite(residual[:, motor]).any():
+        return None
+    return residual[:, motor]

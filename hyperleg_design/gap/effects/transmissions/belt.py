@@ -50,7 +50,7 @@ from hyperleg_design.gap.model import friction, rigid
 from hyperleg_design.gap.model.machine import rotor
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.gap.signals.transmission import turned
+from hyperleg_design.gap.signals.transmission import against_joints, turned
 from hyperleg_design.memoized import memoized
 
 BAND = 0.2
@@ -96,9 +96,20 @@ def frictionless(signals: Signals, motor: int) -> np.ndarray:
     Returns:
         The torque `(t,)` [Nm].
     """
-    return load(signals, motor) - band_limited(
-        _friction(signals, motor), signals.step, BAND / signals.step
-    )
+    return load(signals, motor) - rubbing(signals, motor)
+
+
+def rubbing(signals: Signals, motor: int) -> np.ndarray:
+    """Nominal friction of the joints at a motor, within the band of `load` `(t,)` [Nm].
+
+    Args:
+        signals: a conditioned log, `t` ticks.
+        motor: index of the motor.
+
+    Returns:
+        The torque `(t,)` [Nm].
+    """
+    return band_limited(_friction(signals, motor), signals.step, BAND / signals.step)
 
 
 def _friction(signals: Signals, motor: int) -> np.ndarray:
@@ -123,12 +134,10 @@ def transmitted(signals: Signals, motor: int) -> np.ndarray:
     Returns:
         The torque `(t,)` [Nm].
     """
-    if (
-        "transmission" not in signals.residual
-        or not np.isfinite(signals.residual["transmission"][:, motor]).any()
-    ):
+    ahead = against_joints(signals, motor)
+    if ahead is None:
         return load(signals, motor)
-    spin = signals.residual["transmission"][:, motor] + motor_velocity(signals, motor)
+    spin = ahead + motor_velocity(signals, motor)
     return _passed_on(signals, motor, first_derivative(spin, signals.step), BAND / signals.step)
 
 

@@ -12,7 +12,9 @@ import numpy as np
 from hyperleg_design.gap.effects.placing import motor_velocity
 from hyperleg_design.gap.effects.series import first_derivative
 from hyperleg_design.gap.effects.transmissions.belt import load
+from hyperleg_design.gap.logs.sampling import OF_MEDIAN
 from hyperleg_design.gap.signals.signals import Signals
+from hyperleg_design.gap.signals.transmission import against_joints
 from hyperleg_design.memoized import memoized
 
 FAST = 6.0
@@ -44,7 +46,7 @@ def crossed(signals: Signals, motor: int) -> np.ndarray | None:
         Its place over the width of the zone, from -1/2 to 1/2 `(t,)`; None where its speed is not
         logged, or it does not go to and fro between two ends.
     """
-    speed = _against_joints(signals, motor)
+    speed = _unusual(signals, motor)
     if speed is None:
         return None
     runs = _runs(speed, round(PAUSE / signals.step))
@@ -61,17 +63,15 @@ def crossed(signals: Signals, motor: int) -> np.ndarray | None:
     return np.asarray(np.cumsum(moved) - 0.5 * signs[0])
 
 
-def _against_joints(signals: Signals, motor: int) -> np.ndarray | None:
+def _unusual(signals: Signals, motor: int) -> np.ndarray | None:
     """Speed of a rotor against its joints `(t,)` [rad/s], without what goes with the speed of these
     (a ratio that is off) or with the rate of their torque (a belt that gives).
     """
-    if "transmission" not in signals.residual:
+    logged = against_joints(signals, motor)
+    if logged is None:
         return None
-    speed = signals.residual["transmission"][:, motor]
-    if not np.isfinite(speed).any():
-        return None
-    speed = np.nan_to_num(speed)
-    rate = first_derivative(load(signals, motor)[None], signals.step)[0]
+    speed = np.nan_to_num(logged)
+    rate = first_derivative(load(signals, motor), signals.step)
     usual = np.nan_to_num(np.stack([motor_velocity(signals, motor), rate], 1))
     share, *_ = np.linalg.lstsq(usual, speed, rcond=None)
     return np.asarray(speed - usual @ share)
@@ -81,7 +81,7 @@ def _runs(speed: np.ndarray, pause: int) -> list[slice]:
     """Stretches of one sign in which a speed is fast; such of the same sign are one unless more
     ticks than a pause lie between.
     """
-    noise = 1.4826 * float(np.median(np.abs(speed)))  # of a normal distribution
+    noise = OF_MEDIAN * float(np.median(np.abs(speed)))
     signs = np.where(np.abs(speed) > noise, np.sign(speed), 0.0)
     edges = np.flatnonzero(np.diff(signs, prepend=0.0, append=0.0))
     runs: list[slice] = []

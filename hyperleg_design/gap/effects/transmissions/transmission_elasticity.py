@@ -99,8 +99,8 @@ class TransmissionElasticity(GearEffect):
                 )
         before = np.where(at_rotor, 0.0, 1 - behind)[:, None]
         if before.any():
-            rubbed = load - belt.frictionless(signals, motor)
-            moved -= before * belt.stretch(signals, rubbed, motor, compliance, damping_ratio)
+            rubbing = belt.rubbing(signals, motor)
+            moved -= before * belt.stretch(signals, rubbing, motor, compliance, damping_ratio)
         return belt.trace(signals, motor, moved, side, behind)
 
     @override
@@ -133,12 +133,8 @@ class TransmissionElasticity(GearEffect):
         """Of a belt that stiffens, and with encoders at the rotors, where joints rub, and where
         encoders sit; else it is straight.
         """
-        at_rotors, behind, stiffens = (
-            values[SIDE] >= belt.CHOSEN,
-            values[3] >= belt.CHOSEN,
-            values[4] > 0,
-        )
-        bent = stiffens or (at_rotors and behind)
+        at_rotors, stiffens = values[SIDE] >= belt.CHOSEN, values[4] > 0
+        bent = stiffens or (at_rotors and values[3] >= belt.CHOSEN)
         return np.array([False, False, bent, at_rotors or stiffens, not bent])
 
     @override
