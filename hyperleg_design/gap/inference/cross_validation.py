@@ -13,11 +13,11 @@ from hyperleg_design.gap.inference.channels.discrepancy_posterior import discrep
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.hypotheses.hypothesis import (
     Hypothesis,
-    Stack,
     reduced,
     shifted,
     solve,
 )
+from hyperleg_design.gap.inference.hypotheses.stack import Stack
 from hyperleg_design.gap.inference.rules import InferenceRules
 
 
@@ -56,7 +56,7 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
     samples, weight = evidence.samples, evidence.weight
     fold = samples.fold[samples.part]
     tested = np.arange(len(fold)) < len(evidence.tests.value)
-    stack = Stack.of(hypothesis.causes, weight) if hypothesis.causes else None
+    stack = Stack.of(hypothesis.causes, evidence) if hypothesis.causes else None
     before = np.zeros(len(fold))
     trace, unlisted = np.zeros(len(fold)), np.zeros(len(fold))
     for left_out in range(samples.folds):
@@ -64,13 +64,11 @@ def predicted(evidence: Evidence, hypothesis: Hypothesis, rules: InferenceRules)
         channels = tuple(_without(channel, fitted) for channel in evidence.channels)
         left, own, odd = np.zeros((3, len(fold)))
         if stack is not None:
-            last = bool(stack.constant.any())
-            columns = stack.columns * fitted
-            columns = np.concatenate([columns, stack.constant[None] * fitted]) if last else columns
             part = replace(evidence, channels=channels)
-            products = shifted(reduced(part, hypothesis.scales, columns), last)
+            products = reduced(part, hypothesis.scales, stack.rows * fitted)
+            products = shifted(products, stack.constant_last)
             solution = solve(products, stack.low, stack.high, stack.shape, rules, stack.groups)
-            left = solution.theta @ stack.columns + stack.constant
+            left = stack.sizes(solution.theta) @ stack.rows
             for piece, cause in zip(hypothesis.parts, hypothesis.causes, strict=True):
                 if cause.standing:
                     continue

@@ -53,7 +53,7 @@ def judge_signals(
     """
     say = show or (lambda _: None)
     search = Search(evidence_of(signals, references, rules), rules, places, threads, say)
-    result = search.result(rivals=False)
+    result = search.result()
     apart: list[Difference] = []
     while len(apart) < len(references) - 1 and (odd := differences(search, result)):
         say("one reference differs from the others: searching again without what it has")
@@ -65,9 +65,9 @@ def judge_signals(
         # of two references that differ, either may be wrong: take the one without which the causes
         # under test gain less
         difference, search, begun = min(tried, key=lambda entry: _gain(*entry[1:]))
-        result, references = search.result(begun, rivals=False), search.evidence.references
+        result, references = search.result(begun), search.evidence.references
         apart.append(difference)
-    result = search.result(result.best)
+    result = search.settled(result.best)
     evidence, result = search.evidence, changes_first(result, rules)
     held = predicted(evidence, result.best, rules)
     size = GapSize.of(evidence, result.best, held, rules)

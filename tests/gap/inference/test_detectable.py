@@ -78,7 +78,7 @@ def test_what_is_wrong_is_larger_than_what_would_have_been_named(sizes):
 
 def test_a_gap_that_causes_explain_hides_nothing(search, sizes):
     """Beside no cause, the friction at the knee counts as discrepancy there."""
-    explained = search.result().best
+    explained = search.settled(search.result().best).best
     assert ("viscous_friction", "knee", False) in explained.names
     mended = {(one.effect, one.location): one.change for one in detectable(search, explained)}
     for one in sizes:

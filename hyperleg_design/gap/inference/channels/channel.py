@@ -167,24 +167,48 @@ class Channel:
             shown |= columns[:, cut].any(1)
         return shown
 
-    def crossed(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def crossed(
+        self, columns: np.ndarray, some: np.ndarray | slice = slice(None)
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Sums of products with further columns.
 
         Args:
             columns: weighted as the residual `(m, S)`.
+            some: which of them `(n,)`; all by default.
 
         Returns:
-            With the discrepancy columns and the residual `(cells, k + 1, m)`, and among themselves
-            `(cells, m, m)`.
+            With the discrepancy columns and the residual `(cells, k + 1, n)`, and among themselves
+            `(cells, n, n)`.
         """
-        m = len(columns)
-        cross = np.zeros((len(self.number), self.columns + 1, m))
-        own = np.zeros((len(self.number), m, m))
+        count = len(np.arange(len(columns))[some])
+        cross = np.zeros((len(self.number), self.columns + 1, count))
+        own = np.zeros((len(self.number), count, count))
         for cell, (cut, white) in enumerate(zip(self._cuts, self.whitened, strict=True)):
-            mine = columns[:, cut]
+            mine = columns[:, cut][some]
             if mine.any():
                 cross[cell], own[cell] = white @ mine.T, mine @ mine.T
         return cross, own
+
+    def crossed_with(
+        self, columns: np.ndarray, some: np.ndarray, others: np.ndarray, of_others: np.ndarray
+    ) -> np.ndarray:
+        """Sums of products of columns with others.
+
+        Args:
+            columns: weighted as the residual `(m, S)`.
+            some: which of them `(n,)`.
+            others: weighted alike `(p, S)`.
+            of_others: which of these `(q,)`.
+
+        Returns:
+            By cell `(cells, n, q)`.
+        """
+        products = np.zeros((len(self.number), len(some), len(of_others)))
+        for cell, cut in enumerate(self._cuts if len(some) and len(of_others) else ()):
+            theirs = others[:, cut][of_others]
+            if theirs.any():
+                products[cell] = (columns[:, cut] @ theirs.T)[some]  # no copy of many columns
+        return products
 
     def over_noise(self, noise: np.ndarray, columns: np.ndarray) -> list[np.ndarray]:
         """Divide columns by the noise.

@@ -35,16 +35,38 @@ class Crossing:
             columns: weighted as the residual `(m, S)`.
         """
         present = columns != 0  # numpy looks through truth values many times faster than numbers
-        shown = [np.flatnonzero(channel.shows(present)) for channel in channels]
-        crossed = [(np.zeros((0, 0, 0)), np.zeros((0, 0, 0)))] * len(shown)
-        for place, (channel, some) in enumerate(zip(channels, shown, strict=True)):
-            if len(some):
-                crossed[place] = channel.crossed(
-                    columns[some] if len(some) < len(columns) else columns
-                )
+        shown = tuple(np.flatnonzero(channel.shows(present)) for channel in channels)
+        crossed = [
+            channel.crossed(columns, some) for channel, some in zip(channels, shown, strict=True)
+        ]
         return cls(
-            len(columns), tuple(shown), tuple(c for c, _ in crossed), tuple(o for _, o in crossed)
+            len(columns), shown, tuple(cross for cross, _ in crossed), tuple(o for _, o in crossed)
         )
+
+    def extended(
+        self, channels: Sequence[Channel], known: np.ndarray, further: np.ndarray
+    ) -> Crossing:
+        """Products of the first of these columns and of further ones, the products of the first
+        ones as they are.
+
+        Args:
+            channels: of which these are the products.
+            known: the first columns `(k, S)`.
+            further: the further ones `(m, S)`.
+        """
+        new = Crossing.of(channels, further)
+        shown, crosses, owns = [], [], []
+        for channel, before, some, *products in zip(
+            channels, self.shown, new.shown, self.cross, self.own, new.cross, new.own, strict=True
+        ):
+            kept = before[before < len(known)]
+            cross, own, new_cross, new_own = products
+            between = channel.crossed_with(known, kept, further, some)
+            own = own[:, : len(kept), : len(kept)]
+            shown.append(np.concatenate([kept, len(known) + some]))
+            crosses.append(np.concatenate([cross[:, :, : len(kept)], new_cross], axis=2))
+            owns.append(np.block([[own, between], [between.transpose(0, 2, 1), new_own]]))
+        return Crossing(len(known) + new.count, tuple(shown), tuple(crosses), tuple(owns))
 
     def left(self, channels: Sequence[Channel], theta: np.ndarray) -> list[Residual]:
         """What is left of each channel's residual without a trace over these columns.

@@ -11,15 +11,12 @@ from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.kinds import JointEffect, MotorEffect
 from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.channels.crossing import Crossing
-from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypotheses.hypothesis import (
     EVERYWHERE,
     Candidate,
     Hypothesis,
     Name,
-    Stack,
 )
 from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit
 from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
@@ -42,9 +39,8 @@ def at_all_places(
     """
     scales = limited_scales(fits.evidence, current.scales, fits.rules)
     acting = {(candidate.effect, candidate.standing) for candidate in current.candidates}
-    start, joined_effects = 0.0, []
-    if current.causes:
-        start = _gain(fits, current.causes, scales)
+    joined_effects = []
+    start = fits.at_scales(fits.stacked(current.causes, ()), scales).gain
     for (effect, _), own in _joinable(fits, proposals, acting):
         candidates = [fits.candidate(proposals[name][0], current, steps=1) for name in own]
         causes = tuple(
@@ -55,7 +51,7 @@ def at_all_places(
         )
         if len(causes) < 2:
             continue
-        gain = _gain(fits, (*current.causes, *causes), scales) - start
+        gain = fits.at_scales(fits.stacked(current.causes, causes), scales).gain - start
         joined_effects.append((gain, Candidate(effect, EVERYWHERE, causes)))
     return sorted(joined_effects, key=lambda entry: (-entry[0], *entry[1].name))
 
@@ -94,13 +90,6 @@ def _alike(effect: Effect, standing: bool) -> bool:
         return True
     of_joints = isinstance(effect, JointEffect | MotorEffect) and not effect.of_zeros
     return of_joints and (standing or not effect.built)
-
-
-def _gain(fits: HypothesisFit, causes: Sequence[Cause], scales: Sequence[Scales]) -> float:
-    """What causes gain at fixed scales [nat]."""
-    stack = Stack.of(causes, fits.evidence.weight)
-    crossing = Crossing.of(fits.evidence.channels, stack.rows)
-    return fits.at_scales(stack, crossing, scales).gain
 
 
 def without_gain_from_torques(cause: Cause) -> Cause:

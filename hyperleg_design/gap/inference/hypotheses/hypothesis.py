@@ -17,7 +17,7 @@ from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
 from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.endogenous import Factor, joined
+from hyperleg_design.gap.inference.endogenous import Factor
 from hyperleg_design.gap.inference.hypotheses.bounded_least_squares import within_bounds
 from hyperleg_design.gap.inference.interactions import Acting
 from hyperleg_design.gap.inference.rules import InferenceRules
@@ -125,68 +125,6 @@ class Hypothesis:
         """
         variance = np.diag(self.covariance)[self.parts[place]]
         return np.asarray(np.sqrt(np.maximum(variance, 0.0)) * self.causes[place].usual)
-
-
-@dataclass(frozen=True, eq=False)
-class Stack:
-    """Columns of some causes, one after the other."""
-
-    columns: np.ndarray
-    """Weighted as the residual `(k, S)`."""
-    constant: np.ndarray
-    """Weighted trace at theta 0 of what is linearised elsewhere `(S,)`."""
-    low: np.ndarray
-    high: np.ndarray
-    """Bounds of theta `(k,)`."""
-    shape: np.ndarray
-    """Parameters that only shape a trace `(k,)` of bool."""
-    factors: tuple[tuple[int, Factor | Shrinking], ...] = ()
-    """Parameters that scale the torque which the residual is made of, and the missing term of its
-    density, see `endogenous`."""
-
-    @cached_property
-    def groups(self) -> list[tuple[list[int], Factor | Shrinking]]:
-        """`factors`, of which those that scale the same torque are one."""
-        return joined(self.factors)
-
-    @property
-    def constant_last(self) -> bool:
-        """Whether `rows` ends with a constant trace."""
-        return bool(self.constant.any())
-
-    @property
-    def rows(self) -> np.ndarray:
-        """Columns, and the constant trace where there is one `(k, S)` or `(k + 1, S)`."""
-        if not self.constant_last:
-            return self.columns
-        return np.concatenate([self.columns, self.constant[None]])
-
-    @classmethod
-    def of(cls, causes: Sequence[Cause], weight: np.ndarray) -> Stack:
-        """Stack linearised causes.
-
-        Args:
-            causes: in their order.
-            weight: what a trace is multiplied by before products are taken `(S,)`.
-        """
-        constant = np.zeros(len(weight))
-        for cause in causes:
-            if not cause.linear:
-                constant = constant + cause.constant
-        ends = np.cumsum([0, *(len(cause.nulls) for cause in causes)]).tolist()
-        factors = tuple(
-            (start + term.parameter, term)
-            for start, cause in zip(ends, causes, strict=False)
-            for term in cause.factors
-        )
-        return cls(
-            np.concatenate([cause.columns for cause in causes]) * weight,
-            constant * weight,
-            np.concatenate([(cause.low - cause.nulls) / cause.usual for cause in causes]),
-            np.concatenate([(cause.high - cause.nulls) / cause.usual for cause in causes]),
-            np.concatenate([cause.shape for cause in causes]),
-            factors,
-        )
 
 
 def reduced(evidence: Evidence, scales: Sequence[Scales], columns: np.ndarray) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -13,7 +14,6 @@ from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.inference.assembly import Evidence
 from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scale_fit import STEPS, first_scales, fitted
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, Traces
@@ -23,12 +23,12 @@ from hyperleg_design.gap.inference.hypotheses.hypothesis import (
     Hypothesis,
     Name,
     Solution,
-    Stack,
     shifted,
     solve,
 )
 from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
 from hyperleg_design.gap.inference.hypotheses.proposals import Proposal
+from hyperleg_design.gap.inference.hypotheses.stack import Stack
 from hyperleg_design.gap.inference.interactions import Acting, acting_on, values_of
 from hyperleg_design.gap.inference.interactions import beside as samples_beside
 from hyperleg_design.gap.inference.linearisation import linearise
@@ -74,6 +74,8 @@ class HypothesisFit:
     ) -> None:
         self.evidence, self.rules, self.threads = evidence, rules, threads
         self.traces, self.count, self.only = traces, count, only
+        self._base = Stack.of((), evidence)
+        """Causes beside which others were tried last."""
         self._left: dict[tuple[bool, bool], tuple[Any, Samples]] = {}
         """Samples of `_beside` by what shows in them, and the causes that leave them so."""
 
@@ -128,12 +130,11 @@ class HypothesisFit:
                 break
             cause = self.evidence.on_all_samples(cause, proposal.standing, self.only)
             cause = replace(cause, before=values_of(others))
-            stack = Stack.of((*current.causes, cause), self.evidence.weight)
-            crossing = Crossing.of(self.evidence.channels, stack.rows)
-            reached = self._reached(stack, crossing, scales, cause)
+            stack = self.stacked(current.causes, (cause,))
+            reached = self._reached(stack, scales, cause)
             if best is None or reached > best[0]:
                 best = reached, cause
-                sizes = self.at_scales(stack, crossing, scales).theta[-len(cause.nulls) :]
+                sizes = self.at_scales(stack, scales).theta[-len(cause.nulls) :]
                 move = np.clip(cause.nulls + sizes * cause.usual, cause.low, cause.high) - values
             else:
                 move = (best[1].values - values) / 2
@@ -142,14 +143,12 @@ class HypothesisFit:
             values = values + move
         return None if best is None else Candidate(proposal.effect, proposal.location, (best[1],))
 
-    def _reached(
-        self, stack: Stack, crossing: Crossing, scales: Sequence[Scales], cause: Cause
-    ) -> float:
+    def _reached(self, stack: Stack, scales: Sequence[Scales], cause: Cause) -> float:
         """What causes gain at fixed scales where the last of them has the values at which it is
         linearised, without what is known of sizes before [nat].
         """
         last = slice(len(stack.low) - len(cause.nulls), None)
-        solution = self.at_scales(_held(stack, [(last, cause)]), crossing, scales)
+        solution = self.at_scales(stack.held([(last, cause)]), scales)
         paid = sum(term.log(solution.theta[place]) for place, term in stack.groups)
         return solution.gain - solution.occam + paid
 
@@ -170,11 +169,11 @@ class HypothesisFit:
             are_near(hypothesis.values(i), causes[i].values, causes[i].usual, least) for i in bent
         ):
             return hypothesis
-        stack = Stack.of(causes, self.evidence.weight)
-        crossing = Crossing.of(self.evidence.channels, stack.rows)
-        stack = _held(stack, [(part[i], causes[i]) for i in bent])
-        fit = self._first_round(stack, crossing, hypothesis.scales)
-        reached = self._likelihood(stack, crossing, fit)
+        last = len(hypothesis.candidates[-1].causes)
+        stack = self.stacked(causes[:-last], causes[-last:])
+        stack = stack.held([(part[i], causes[i]) for i in bent])
+        fit = self._first_round(stack, hypothesis.scales)
+        reached = self._likelihood(stack, fit)
         own = replace(hypothesis, theta=fit.solution.theta, scales=fit.scales, log_evidence=reached)
         return replace(own, log_prior=log_prior(own, self.evidence, self.rules, self.count))
 
@@ -198,22 +197,33 @@ class HypothesisFit:
             self._left[kind] = wanted, left
         return left
 
+    def stacked(self, known: tuple[Cause, ...], further: tuple[Cause, ...]) -> Stack:
+        """Stack causes; the products of the known ones are kept, as many causes are tried beside
+        one hypothesis.
+
+        Args:
+            known: causes of a hypothesis.
+            further: causes beside them.
+        """
+        base = self._base
+        if len(base.causes) != len(known) or any(map(operator.is_not, base.causes, known)):
+            self._base = base = Stack.of(known, self.evidence)
+        return base.extended(further, self.evidence) if further else base
+
     def at_scales(
         self,
         stack: Stack,
-        crossing: Crossing,
         scales: Sequence[Scales],
         near: np.ndarray | None = None,
     ) -> Solution:
         """Fit causes at fixed scales; the gain is over no cause at the same scales.
 
         Args:
-            stack: columns of the causes.
-            crossing: of its rows with the channels.
+            stack: of the causes.
             scales: by channel.
             near: theta at scales nearby.
         """
-        products = crossing.reduced(self.evidence.channels, scales)
+        products = stack.crossing.reduced(self.evidence.channels, scales)
         own = shifted(products, stack.constant_last)
         solution = solve(own, stack.low, stack.high, stack.shape, self.rules, stack.groups, near)
         change = -0.5 * float(own[0, 0] - products[0, 0])
@@ -227,39 +237,36 @@ class HypothesisFit:
             candidates: of the hypothesis.
             scales: to begin with.
         """
-        channels = self.evidence.channels
-        causes = [cause for candidate in candidates for cause in candidate.causes]
-        stack = Stack.of(causes, self.evidence.weight)
-        crossing = Crossing.of(channels, stack.rows)
-        beginnings = [self._first_round(stack, crossing, scales)]
-        lacking = any(cause.standing for cause in causes)
+        *known, last = candidates
+        stack = self.stacked(tuple(c for each in known for c in each.causes), last.causes)
+        beginnings = [self._first_round(stack, scales)]
+        lacking = any(cause.standing for cause in stack.causes)
         limited = limited_scales(self.evidence, scales, self.rules, lacking)
         if any(
             len(rows) and (np.any(low.noise < own.noise) or low.standing < own.standing)
-            for low, own, rows in zip(limited, scales, crossing.shown, strict=True)
+            for low, own, rows in zip(limited, scales, stack.crossing.shown, strict=True)
         ):
-            beginnings.append(self._first_round(stack, crossing, limited))
-        fit = max(beginnings, key=lambda begun: self._likelihood(stack, crossing, begun))
+            beginnings.append(self._first_round(stack, limited))
+        fit = max(beginnings, key=lambda begun: self._likelihood(stack, begun))
         for _ in range(self.rules.search.rounds - 1):
             if not fit.moved.any():
                 break
-            fit = self._round(stack, crossing, fit, 1, STEPS[-1:], again=True)
-        likelihood = self._likelihood(stack, crossing, fit)
+            fit = self._round(stack, fit, 1, STEPS[-1:], again=True)
+        likelihood = self._likelihood(stack, fit)
         sizes = fit.solution.theta, fit.solution.covariance
         hypothesis = Hypothesis(tuple(candidates), *sizes, fit.scales, likelihood, 0.0)
         prior = log_prior(hypothesis, self.evidence, self.rules, self.count)
         return replace(hypothesis, log_prior=prior)
 
-    def _first_round(self, stack: Stack, crossing: Crossing, scales: Sequence[Scales]) -> _Fitted:
+    def _first_round(self, stack: Stack, scales: Sequence[Scales]) -> _Fitted:
         """Causes at given scales, and after one round."""
-        solution = self.at_scales(stack, crossing, scales)
-        begun = _Fitted(tuple(scales), solution, np.ones(crossing.count, bool))
-        return self._round(stack, crossing, begun, 2, STEPS)
+        solution = self.at_scales(stack, scales)
+        begun = _Fitted(tuple(scales), solution, np.ones(stack.crossing.count, bool))
+        return self._round(stack, begun, 2, STEPS)
 
     def _round(
         self,
         stack: Stack,
-        crossing: Crossing,
         begun: _Fitted,
         sweeps: int,
         steps: tuple[float, ...],
@@ -267,28 +274,28 @@ class HypothesisFit:
     ) -> _Fitted:
         """Fit the scales of the channels in which a cause moved, then the causes, see `fitted`."""
         channels = self.evidence.channels
-        left = crossing.left(channels, _sizes(stack, begun.solution))
+        left = stack.crossing.left(channels, stack.sizes(begun.solution.theta))
         scales = tuple(
             fitted(channel, own, self.rules, rest, sweeps, steps, again)
             if begun.moved[seen].any()
             else own
             for channel, own, rest, seen in zip(
-                channels, begun.scales, left, crossing.shown, strict=True
+                channels, begun.scales, left, stack.crossing.shown, strict=True
             )
         )
         before = begun.solution.theta
-        solution = self.at_scales(stack, crossing, scales, before)
+        solution = self.at_scales(stack, scales, before)
         deviation = np.sqrt(np.maximum(np.diag(solution.covariance), 1e-300))
-        moved = np.zeros(crossing.count, bool)
+        moved = np.zeros(stack.crossing.count, bool)
         moved[: len(before)] = (
             np.abs(solution.theta - before) >= self.rules.search.settled * deviation
         )
         return _Fitted(scales, solution, moved)
 
-    def _likelihood(self, stack: Stack, crossing: Crossing, fit: _Fitted) -> float:
+    def _likelihood(self, stack: Stack, fit: _Fitted) -> float:
         """Log evidence of causes at scales over that of no cause [nat]."""
         channels = self.evidence.channels
-        left = crossing.left(channels, _sizes(stack, fit.solution))
+        left = stack.crossing.left(channels, stack.sizes(fit.solution.theta))
         each = zip(channels, fit.scales, left, self.null_log_posterior, strict=True)
         return fit.solution.occam + float(
             sum(
@@ -296,19 +303,6 @@ class HypothesisFit:
                 for channel, own, rest, null in each
             )
         )
-
-
-def _held(stack: Stack, causes: Sequence[tuple[slice, Cause]]) -> Stack:
-    """A stack in which some causes keep the values at which they are linearised."""
-    low, high = stack.low.copy(), stack.high.copy()
-    for part, cause in causes:
-        low[part] = high[part] = (cause.values - cause.nulls) / cause.usual
-    return replace(stack, low=low, high=high)
-
-
-def _sizes(stack: Stack, solution: Solution) -> np.ndarray:
-    """Sizes of all rows of a stack: those of the causes, and 1 of the constant trace."""
-    return np.append(solution.theta, 1.0) if stack.constant_last else solution.theta
 
 
 def are_near(values: ArrayLike, others: ArrayLike, usual: ArrayLike, least: float) -> bool:

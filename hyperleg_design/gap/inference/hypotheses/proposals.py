@@ -18,7 +18,8 @@ from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, Starts, Traces
 from hyperleg_design.gap.inference.endogenous import Factor, factors_of, held_back_in_all, joined
-from hyperleg_design.gap.inference.hypotheses.hypothesis import ALIKE, Name, Solution, Stack, solve
+from hyperleg_design.gap.inference.hypotheses.hypothesis import ALIKE, Name, Solution, solve
+from hyperleg_design.gap.inference.hypotheses.stack import Stack
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.inference.shrinking import Shrinking
 from hyperleg_design.gap.inference.threads import spread
@@ -50,8 +51,7 @@ class Proposal:
 class _Beside:
     """A hypothesis beside which effects are tried, at its scales."""
 
-    stack: Stack | None
-    crossing: Crossing | None
+    stack: Stack
     scales: tuple[Scales, ...]
     products: np.ndarray
     """Of the residual, the columns, and the constant trace where there is one."""
@@ -210,10 +210,8 @@ class Proposer:
         return np.diag(products)
 
     def _base(self, causes: Sequence[Cause], scales: tuple[Scales, ...]) -> _Beside:
-        channels, weight = self.evidence.channels, self.evidence.weight
-        stack = Stack.of(causes, weight) if causes else None
-        rows = np.zeros((0, len(weight))) if stack is None else stack.rows
-        crossing = Crossing.of(channels, rows)
+        channels, stack = self.evidence.channels, Stack.of(causes, self.evidence)
+        crossing, rows = stack.crossing, stack.rows
         taken = []
         for channel, own, some, cross in zip(
             channels, scales, crossing.shown, crossing.cross, strict=True
@@ -224,12 +222,12 @@ class Proposer:
                 whole[:, :, 1 + some] = cross[:, :-1]
             taken.append(channel.taken(own, whole))
         products = crossing.reduced(channels, scales)
-        twice = rows * weight
+        twice = rows * self.evidence.weight
         parts = tuple(
             channel.over_noise(own.noise, twice)
             for channel, own in zip(channels, scales, strict=True)
         )
-        base = _Beside(stack, crossing, scales, products, parts, tuple(taken), None)
+        base = _Beside(stack, scales, products, parts, tuple(taken), None)
         if causes:
             base = replace(base, solution=self._solved(base, products, np.zeros(0, int)))
         return base
@@ -323,10 +321,11 @@ class Proposer:
             place: of these.
         """
         right, square = products[place, 0].copy(), np.diag(products)[place].copy()
-        if base.stack is not None and base.solution is not None:
+        if base.solution is not None:
+            known = len(base.stack.low)
             if base.stack.constant_last:
-                right -= products[place, 1 + len(base.stack.columns)]
-            own = np.arange(1, 1 + len(base.stack.columns))
+                right -= products[place, 1 + known]
+            own = np.arange(1, 1 + known)
             between = products[np.ix_(own, place)]
             right -= base.solution.theta @ between
             square -= np.sum(between * (base.solution.covariance @ between), axis=0)
@@ -353,15 +352,15 @@ class Proposer:
             scaled: how its parameters, or the size of the start, scale torques.
             free: whether sizes of starts may be anything.
         """
-        stack, known = base.stack, 0 if base.stack is None else len(base.stack.columns)
+        stack, known = base.stack, len(base.stack.low)
         some = np.r_[0 : 1 + known, place]
         own = products[np.ix_(some, some)]
-        if stack is not None and stack.constant_last:
+        if stack.constant_last:
             constant = products[1 + known]
             own[0] -= constant[some]
             own[:, 0] -= constant[some]
             own[0, 0] += constant[1 + known]
-        stacks = [] if stack is None else [(stack.low, stack.high, stack.shape)]
+        stacks = [(stack.low, stack.high, stack.shape)]
         if cause is not None:
             low, high = ((end - cause.nulls) / cause.usual for end in (cause.low, cause.high))
             stacks.append((low, high, cause.shape))
@@ -369,10 +368,10 @@ class Proposer:
             low, high = (-np.inf, np.inf) if free else (0.0, LARGEST)
             count = len(place)
             stacks.append((np.full(count, low), np.full(count, high), np.zeros(count, bool)))
-        groups = [] if stack is None else stack.groups
+        groups = stack.groups
         if scaled:
             own_terms = ((known + term.parameter, term) for term in scaled)
-            groups = joined([*(() if stack is None else stack.factors), *own_terms])
+            groups = joined([*stack.factors, *own_terms])
         low, high, shape = (np.concatenate([s[i] for s in stacks]) for i in range(3))
         near = None if base.solution is None else base.solution.theta
         return solve(own, low, high, shape.astype(bool), self.rules, groups, near)

@@ -11,11 +11,11 @@ from dataclasses import replace
 
 from hyperleg_design.gap.effects import WEIGHED
 from hyperleg_design.gap.inference.cause import Cause
-from hyperleg_design.gap.inference.channels.crossing import Crossing
 from hyperleg_design.gap.inference.endogenous import Factor
-from hyperleg_design.gap.inference.hypotheses.hypothesis import Candidate, Hypothesis, Stack
+from hyperleg_design.gap.inference.hypotheses.hypothesis import Candidate, Hypothesis
 from hyperleg_design.gap.inference.hypotheses.hypothesis_fit import HypothesisFit, are_near
 from hyperleg_design.gap.inference.hypotheses.limited_scales import limited_scales
+from hyperleg_design.gap.inference.hypotheses.stack import Stack
 from hyperleg_design.gap.inference.interactions import Acting, acting_on, values_of
 from hyperleg_design.gap.inference.linearisation import linearise
 
@@ -91,9 +91,7 @@ def _agreed(fits: HypothesisFit, hypothesis: Hypothesis) -> Hypothesis:
 def _at_limited_scales(fits: HypothesisFit, hypothesis: Hypothesis) -> Hypothesis:
     """Sizes of a hypothesis at limited scales, at which nothing hides what causes explain."""
     scales = limited_scales(fits.evidence, hypothesis.scales, fits.rules, True)
-    stack = Stack.of(hypothesis.causes, fits.evidence.weight)
-    crossing = Crossing.of(fits.evidence.channels, stack.rows)
-    solution = fits.at_scales(stack, crossing, scales)
+    solution = fits.at_scales(Stack.of(hypothesis.causes, fits.evidence), scales)
     return replace(hypothesis, theta=solution.theta, covariance=solution.covariance)
 
 

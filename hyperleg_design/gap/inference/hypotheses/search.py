@@ -75,37 +75,65 @@ class Search:
         the predicted change of the score that would have been enough, and the score of the
         hypothesis beside which they were fitted [nat]."""
 
-    def result(self, begun: Hypothesis | None = None, rivals: bool = True) -> Result:
-        """Search forward until no further cause is worth its prior, drop what is not, and put
+    def result(self, begun: Hypothesis | None = None) -> Result:
+        """Search forward until no further cause is worth its prior, dropping what is not, and put
         others in the place of each.
 
         Args:
             begun: the hypothesis that the search begins with; none by default.
-            rivals: whether the causes of the best hypothesis are compared with all rivals at their
-                places, which takes half of the time.
 
         Returns:
             The hypotheses that were fitted.
         """
-        current = begun or self.fits.null
-        smaller: list[Hypothesis] = []
+        self._grown(begun or self.fits.null, [])
+        return self._result()
+
+    def settled(self, best: Hypothesis) -> Result:
+        """Compare the causes of what a search ended in with all rivals at their places, and go on
+        from what is better.
+
+        Args:
+            best: the best hypothesis of `result`.
+
+        Returns:
+            The hypotheses that were fitted.
+        """
+        while True:
+            better = self._with_rivals_at_each_place(best)
+            if better is best:
+                better = self._without_unlisted(best)
+            if better is best:
+                return self._result()
+            best = self._grown(*self._without_needless(better))
+
+    def _grown(self, current: Hypothesis, smaller: list[Hypothesis]) -> Hypothesis:
+        """Extend a hypothesis, or put a cause in the place of another one, while it gains.
+
+        Args:
+            current: the hypothesis.
+            smaller: those that lack one of its candidates each; empty where they are not known.
+        """
         while True:
             best = self._improved(self.extended(current), current)
             if best is current and len(current.candidates) > 1:
                 smaller = smaller or self._each_removed(current)
                 for removed, rest in zip(current.candidates, smaller, strict=True):
                     best = self._improved(self.extended(rest, removed), best)
-            if best is current and rivals:
-                best = self._with_rivals_at_each_place(current)
-            if best is current and rivals:
-                best = self._without_unlisted(current)
             if best is current:
-                break
-            self.show(f"causes so far: {', '.join(_in_words(c) for c in best.candidates)}")
-            current, smaller = best, self._each_removed(best)
-            best = self._improved(smaller[:-1], current)
-            if best is not current:
-                current, smaller = best, []
+                return current
+            current, smaller = self._without_needless(best)
+
+    def _without_needless(self, best: Hypothesis) -> tuple[Hypothesis, list[Hypothesis]]:
+        """Drop a cause that is not worth its prior any more beside the last one; with the
+        hypotheses that lack one cause each, where none is dropped.
+        """
+        self.show(f"causes so far: {', '.join(_in_words(c) for c in best.candidates)}")
+        smaller = self._each_removed(best)
+        fewer = self._improved(smaller[:-1], best)
+        return (best, smaller) if fewer is best else (fewer, [])
+
+    def _result(self) -> Result:
+        """All hypotheses that were fitted, best first."""
         ranked = sorted(self.fitted.values(), key=lambda fitted: (-fitted.score, fitted.names))
         missing = tuple(
             traced

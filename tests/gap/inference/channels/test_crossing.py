@@ -80,3 +80,16 @@ def test_no_columns_leave_all_of_the_residual(channels):
     assert alone == pytest.approx(expected)
     for channel, own in zip(channels, crossing.left(channels, np.zeros(0)), strict=True):
         assert own is channel.whole_residual
+
+
+def test_products_of_further_columns_join_the_first_ones(channels, columns):
+    scales = [SCALES, OTHER, SCALES]
+    whole = Crossing.of(channels, columns)
+    dropped = np.concatenate([columns[:2], columns[-1:]])  # the last one is not among the first two
+    joined = Crossing.of(channels, dropped).extended(channels, columns[:2], columns[2:])
+    assert joined.count == whole.count
+    np.testing.assert_allclose(
+        joined.reduced(channels, scales), whole.reduced(channels, scales), rtol=1e-12, atol=1e-12
+    )
+    for one, other in zip(joined.shown, whole.shown, strict=True):
+        assert one.tolist() == other.tolist()

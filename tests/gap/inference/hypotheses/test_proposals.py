@@ -15,8 +15,9 @@ from hyperleg_design.gap.inference.assembly import evidence_of
 from hyperleg_design.gap.inference.channels.scale_fit import first_scales
 from hyperleg_design.gap.inference.channels.scales import Scales
 from hyperleg_design.gap.inference.effect_traces import NotJudged, Starts, traces_of
-from hyperleg_design.gap.inference.hypotheses.hypothesis import Stack, reduced, shifted, solve
+from hyperleg_design.gap.inference.hypotheses.hypothesis import reduced, shifted, solve
 from hyperleg_design.gap.inference.hypotheses.proposals import LARGEST, Proposer
+from hyperleg_design.gap.inference.hypotheses.stack import Stack
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
@@ -54,13 +55,12 @@ def test_gains_are_those_of_all_columns_at_once(constant, alone):
     assert [one.gain for one in found] == sorted((one.gain for one in found), reverse=True)
 
     def gain(columns, low, high):
-        stack = Stack.of(causes, weight) if causes else None
-        rows = [] if stack is None else [stack.columns]
+        stack = Stack.of(causes, evidence)
+        count, last = len(stack.low), stack.constant_last
         padded = np.pad(columns, ((0, 0), (0, size - columns.shape[1])))
-        last = stack is not None and stack.constant_last
-        rows += [padded * weight, *([stack.constant[None]] if last else [])]
+        rows = [stack.rows[:count], padded * weight, stack.rows[count:]]
         products = shifted(reduced(evidence, scales, np.concatenate(rows)), last)
-        free = np.full(0 if stack is None else 2, np.inf)
+        free = np.full(count, np.inf)
         low, high = np.r_[-free, low], np.r_[free, high]
         return solve(products, low, high, np.zeros(len(low), bool), RULES).gain
 
@@ -91,8 +91,7 @@ def test_the_starts_that_gain_most_are_among_those_solved(seed):
         high[2:] = LARGEST
         return solve(products, low, high, np.zeros(len(low), bool), RULES).gain
 
-    stack = Stack.of([acting], weight)
-    acting = replace(acting, compact=csr_array(stack.columns))
+    acting = replace(acting, compact=csr_array(Stack.of([acting], evidence).rows))
     alone = gain(np.zeros((0, size)))
     every = np.array([gain(one[None] * weight) for one in starts]) - alone
     best = np.argsort(-every)[: RULES.search.starts]
