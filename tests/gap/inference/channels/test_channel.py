@@ -123,23 +123,6 @@ def test_what_is_left_without_columns_is_the_residual_without_their_trace():
     np.testing.assert_allclose(left.square, expected.square, rtol=1e-9)
 
 
-def test_products_between_columns_are_summed_over_the_noise():
-    rng = np.random.default_rng(14)
-    channel, _ = made(rng)
-    some = rng.standard_normal((2, len(channel.samples)))
-    others = [rng.standard_normal((n, len(channel.samples))) for n in (1, 3)]
-    noise = np.concatenate(
-        [
-            np.full(len(place), SCALES.noise[band])
-            for place, band in zip(channel.places, channel.band, strict=True)
-        ]
-    )
-    expected = (some / noise) @ np.concatenate(others).T
-    np.testing.assert_allclose(
-        channel.between(channel.over_noise(SCALES.noise, some), others), expected, atol=1e-9
-    )
-
-
 def test_noise_like_the_references_is_healthy_and_far_above_it_is_not():
     channel, _ = made(np.random.default_rng(8))
     calm = np.array([0.7, 1.5, 0.8, 1.2])
