@@ -41,11 +41,9 @@ def needed(
     torques = {"motion": rigid.inverse_dynamics(subject, *motion, base, rotors=rotors)}
     if "base" in signals.residual and base is not None:
         torques["base"] = rigid.base_wrench(subject, *motion, base)
-    if signals.pad_force is not None:
+    if signals.pushing is not None:
         rotation = None if base is None else base.rotation
-        torque, wrench = pads.contact_torque(
-            subject, position, rotation, np.nan_to_num(signals.pad_force)
-        )
+        torque, wrench = pads.contact_torque(subject, position, rotation, signals.pushing)
         torques["motion"] = torques["motion"] - torque
         if "base" in torques:
             torques["base"] = torques["base"] - wrench

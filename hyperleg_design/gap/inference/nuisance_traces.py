@@ -236,9 +236,9 @@ def _told(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
             if known
             else {}
         )
-    if signals.pad_force is None:
+    if signals.pushing is None:
         return {}
-    force = np.nan_to_num(signals.pad_force)
+    force = signals.pushing
     rotation = None if signals.base is None else signals.base.rotation
     own = np.array([subject.feet[p.foot] == error.location for p in subject.pads])
     if error.effect == FORCES_LATE:
@@ -322,7 +322,8 @@ def columns(
         row: np.zeros((len(errors), filtered_log.count(row)))
         for row in range(len(filtered_log.rows))
     }
-    for place, trace in enumerate(traces(filtered_log.signals, errors)):
+    for place, physical in enumerate(traces(filtered_log.signals, errors)):
+        trace = filtered_log.signals.shown(physical)
         for row, entry in enumerate(filtered_log.rows):
             if entry.residual_name in trace:
                 values = trace[entry.residual_name][:, entry.column]

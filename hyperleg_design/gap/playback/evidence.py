@@ -131,7 +131,8 @@ def _explained(
         own = effect(cause.effect)
         acted_on = acting_on(own, cause.standing, [*causes, *others])
         seen = left_by(signals, own, acted_on) if acted_on else signals
-        trace = own.trace(seen, cause.location, cause.values[None]).get(residual_name)
+        traces = signals.shown(own.trace(seen, cause.location, cause.values[None]))
+        trace = traces.get(residual_name)
         if trace is not None:
             explained = explained + trace[0]
     return explained

@@ -11,7 +11,7 @@ have something to show.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -258,11 +258,12 @@ def _with_sensor_bias(effect: Effect, log: Log, values: np.ndarray) -> Log:
 
 
 def _largest(
-    traces: dict[str, np.ndarray], signals: Signals
+    traces: Mapping[str, np.ndarray], signals: Signals
 ) -> tuple[str, str, str, np.ndarray, np.ndarray]:
     """The first of the residuals in which there is a trace, its row with the largest, its unit,
     that trace, and the residual.
     """
+    traces = signals.shown(traces)
     for residual_name in ("motion", "drive", "ground", "base", "transmission"):
         if residual_name not in traces:
             continue

@@ -37,6 +37,7 @@ from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.smoothing import Smooth
 from hyperleg_design.gap.signals.stops import at_stop
 from hyperleg_design.gap.signals.torque_sensors import behind_gears, taken_before
+from hyperleg_design.gap.signals.unknown_forces import eliminated
 from hyperleg_design.simulation.drives import limits
 
 EDGE = 4.0
@@ -90,19 +91,24 @@ def condition(log: Log, subject: Subject) -> Signals:
         resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step
     )
     ground, needed, of_base = _needed(log, subject, ticks, motion, base, shaken)
-    if of_base is not None:
-        residual["base"] = of_base
-    unknown = contact.unknown_rows(
-        subject, ground, margin=int(np.ceil(_edge(motion, lacking) / step))
-    )
-    unknown = unknown | at_stop(subject, motion.value)
+    margin = int(np.ceil(_edge(motion, lacking) / step))
+    unmeasured = lacking | at_stop(subject, motion.value)
+    rotation = None if base is None else base.rotation
+    elimination = eliminated(subject, motion.value, rotation, ground, unmeasured, margin)
+    if of_base is not None and (ground.pad_force is not None or elimination is not None):
+        residual["base"] = np.where(contact.known_of_base(subject, ground), of_base, np.nan)
     behind, before = None if measured is None else behind_gears(log, subject), None
     if behind is not None:
         taken = taken_before(subject, behind, motion, shaken)
         needed, before = needed - taken, applied(subject.motor_from_joint, taken)
-    residual["motion"] = np.where(
-        unknown | lacking, np.nan, applied(subject.joint_from_motor, believed) - needed
-    )
+    of_motion = applied(subject.joint_from_motor, believed) - needed
+    unknown = contact.unknown_rows(subject, ground, margin) | unmeasured
+    if elimination is not None:
+        of_motion = elimination.applied(of_motion, of_base)
+        needed = needed - elimination.pushed(of_base, len(ticks))
+        unknown[elimination.ticks] = elimination.lost
+        notes.append(elimination.note(subject.joints))
+    residual["motion"] = np.where(unknown, np.nan, of_motion)
     if measured is not None and limited is not None:
         given = measured if before is None else measured + before
         residual["drive"], repeated = _drive_residual(subject, given, limited)
@@ -144,6 +150,8 @@ def condition(log: Log, subject: Subject) -> Signals:
         valid=valid,
         residual=residual,
         pad_force=ground.pad_force,
+        pushing=ground.pushing(subject),
+        elimination=elimination,
         touching=ground.touching,
         bandwidth=motion.crossover / (2 * np.pi),
         noise=motion.level,
@@ -167,8 +175,9 @@ def _needed(
     base: BaseMotion | None,
     shaken: LimitCycle | None,
 ) -> tuple[contact.Ground, np.ndarray, np.ndarray | None]:
-    """What the ground does, the torque that the joints need by the nominal model `(t, n)` [Nm], and
-    the residual of a floating base `(t, 6)` where the forces on its feet are known.
+    """What the ground does, the torque that the joints need by the nominal model, less what known
+    forces of the ground give `(t, n)` [Nm], and the wrench that a floating base needs beyond these,
+    with the other sign `(t, 6)`.
     """
     moved = motion.value, motion.first, motion.second
     own = None if base is None else rigid.base_wrench(subject, *moved, base)
@@ -178,14 +187,12 @@ def _needed(
     needed = rigid.inverse_dynamics(subject, *moved, base) + friction.friction_torque(
         subject, motion.value, motion.first, None if shaken is None else shaken.speed
     )
-    if ground.pad_force is None:
-        return ground, needed, None
-    rotation, force = None if base is None else base.rotation, np.nan_to_num(ground.pad_force)
+    force = ground.pushing(subject)
+    if force is None:
+        return ground, needed, None if own is None else -own
+    rotation = None if base is None else base.rotation
     pushed, wrench = pads.contact_torque(subject, motion.value, rotation, force)
-    if own is None:
-        return ground, needed - pushed, None
-    known = np.isfinite(ground.pad_force).all((1, 2))
-    return ground, needed - pushed, np.where(known[:, None], wrench - own, np.nan)
+    return ground, needed - pushed, None if own is None else wrench - own
 
 
 def _motor_speeds(

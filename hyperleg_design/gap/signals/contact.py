@@ -43,6 +43,43 @@ class Ground:
     touching: np.ndarray | None
     """Feet that touch, or may `(t, f)`; None of a fixed base without contact forces."""
 
+    def unknown(self, subject: Subject) -> tuple[np.ndarray, np.ndarray]:
+        """Find feet about whose force this log does not tell all.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            Feet that touch, or may, with an unknown force, and those whose force is known, but not
+            where under the foot it acts `(t, f)`; `(1, f)` of a fixed base without forces.
+        """
+        feet = len(subject.feet)
+        if self.touching is None or self.pad_force is None or self.foot_force is None:
+            none = np.zeros((1, feet), bool)
+            return none if self.touching is None else self.touching, none
+        lost = ~np.isfinite(self.pad_force).all(-1)
+        unknown = np.stack([lost[:, subject.pad_foot == f].any(1) for f in range(feet)], 1)
+        force = np.isfinite(self.foot_force).all(-1)
+        return unknown & ~force, unknown & force
+
+    def pushing(self, subject: Subject) -> np.ndarray | None:
+        """Look up the force on each pad, or its equal share of what its foot feels where nobody
+        measured where that acts; 0 where it is unknown.
+
+        Args:
+            subject: the robot.
+
+        Returns:
+            World frame `(t, P, 3)` [N]; None without contact forces.
+        """
+        if self.pad_force is None or self.foot_force is None:
+            return None
+        shares = self.foot_force[:, subject.pad_foot] / np.bincount(subject.pad_foot)[
+            subject.pad_foot
+        ].reshape(-1, 1)
+        known = np.isfinite(self.pad_force).all(-1, keepdims=True)
+        return np.nan_to_num(np.where(known, self.pad_force, shares))
+
 
 def contacts(
     log: Log,
@@ -123,20 +160,30 @@ def unknown_rows(subject: Subject, ground: Ground, margin: int) -> np.ndarray:
     Returns:
         `(t, n)`; `(1, n)` where there is none.
     """
-    chains = [foot_chain(subject, foot) for foot in range(len(subject.feet))]
-    if ground.touching is None:
+    unknown = np.logical_or(*ground.unknown(subject))
+    if not unknown.any():
         return np.zeros((1, len(subject.joints)), bool)
-    unknown = ground.touching
-    if ground.pad_force is not None:
-        lost = ~np.isfinite(ground.pad_force).all(-1)
-        unknown = np.stack(
-            [lost[:, subject.pad_foot == f].any(1) for f in range(len(subject.feet))], 1
-        )
+    chains = [foot_chain(subject, foot) for foot in range(len(subject.feet))]
     out = np.zeros((len(unknown), len(subject.joints)), bool)
     for foot, chain in enumerate(chains):
         wide = np.convolve(unknown[:, foot], np.ones(2 * margin + 1), "same") > 0.5
         out[:, chain] |= wide[:, None]
     return out
+
+
+def known_of_base(subject: Subject, ground: Ground) -> np.ndarray:
+    """Find the rows of a floating base that known forces of the ground explain: all where all is
+    known, those of forces where nobody knows where these act.
+
+    Args:
+        subject: the robot.
+        ground: contact of the log.
+
+    Returns:
+        `(t, 6)`, or `(1, 6)`.
+    """
+    force, place = (feet.any(1, keepdims=True) for feet in ground.unknown(subject))
+    return np.repeat(np.concatenate([~force, ~force & ~place], 1), 3, axis=1)
 
 
 def foot_chain(subject: Subject, foot: int) -> list[int]:

@@ -282,7 +282,7 @@ def traced(filtered_log: FilteredLog, traces: Mapping[str, np.ndarray]) -> dict[
     Returns:
         Samples by row, `(k, samples)` each; rows that the traces leave alone are missing.
     """
-    samples = {}
+    samples, traces = {}, filtered_log.signals.shown(traces)
     shown = {n: ((x != 0) & np.isfinite(x)).any((0, 1)) for n, x in traces.items()}
     for place, row in enumerate(filtered_log.rows):
         if row.residual_name in traces and shown[row.residual_name][row.column]:

@@ -113,8 +113,8 @@ def travelled(position: np.ndarray, still: np.ndarray) -> np.ndarray:
 
 
 def sticking(signals: Signals) -> np.ndarray:
-    """Find the ticks at which a joint may stick, so that its friction is whatever the other torques
-    ask for.
+    """Find the ticks at which a joint may stick, or another one in its row, so that its friction is
+    whatever the other torques ask for.
 
     Args:
         signals: a conditioned log.
@@ -145,6 +145,6 @@ def sticking(signals: Signals) -> np.ndarray:
             way = np.abs(travelled(signals.position, still))
             creeps &= way < UNDERWAY * presliding(signals)
         still |= creeps
-    return np.asarray(
-        maximum_filter1d(still.astype(np.uint8), 2 * round(AROUND / signals.step) + 1, axis=0) > 0
-    )
+    around = 2 * round(AROUND / signals.step) + 1
+    resting = np.asarray(maximum_filter1d(still.astype(np.uint8), around, axis=0) > 0)
+    return resting if signals.elimination is None else signals.elimination.anywhere(resting)

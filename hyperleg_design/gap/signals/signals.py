@@ -4,6 +4,7 @@ dynamics.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,6 +18,7 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.model.supply import over_nominal
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.limit_cycle import LimitCycle
+from hyperleg_design.gap.signals.unknown_forces import Elimination
 
 RESIDUALS = {
     "motion": ("joint", "Nm"),
@@ -84,6 +86,7 @@ class Signals:
 
     Residuals, each what the log shows minus what the nominal model explains:
         motion: believed joint torque minus the torque that the logged motion needs `(t, n)` [Nm];
+            while forces of the ground are unknown, combinations that are free of them;
         drive: measured motor torque minus the torque that the controller asks for, within nominal
             limits `(t, m)` [Nm], where both are known; of sensors behind the gear, with the nominal
             friction and the rotors that act before them;
@@ -145,6 +148,11 @@ class Signals:
     pad_force: np.ndarray | None = None
     """Force of the ground on each of `subject.pads`, world frame `(t, P, 3)` [N], where the place
     of the force is known."""
+    pushing: np.ndarray | None = None
+    """The same, and equal shares of a foot's force where its place is unknown; 0 where the force
+    is."""
+    elimination: Elimination | None = None
+    """How the rows of `motion` are combined while forces of the ground are unknown."""
     touching: np.ndarray | None = None
     """Of a floating base: whether each foot touches the ground, or may `(t, f)`."""
     bandwidth: np.ndarray | None = None
@@ -194,6 +202,14 @@ class Signals:
         if drive is not None:
             taken = -applied(self.subject.joint_from_motor, drive)
         return np.where(self.behind_gears, taken, motion)
+
+    def shown(self, traces: Mapping[str, np.ndarray]) -> Mapping[str, np.ndarray]:
+        """Combine the rows of traces as those of the residuals, see `elimination`.
+
+        Args:
+            traces: by residual `(..., t, rows)`, physical.
+        """
+        return traces if self.elimination is None else self.elimination.freed(traces)
 
     @property
     def steered(self) -> bool:

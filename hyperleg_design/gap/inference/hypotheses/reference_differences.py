@@ -56,7 +56,7 @@ class Difference:
         """
         odd = references[self.reference]
         effect = WEIGHED[self.cause.effect]
-        traces = effect.trace(odd, self.cause.location, self.values[None])
+        traces = odd.shown(effect.trace(odd, self.cause.location, self.values[None]))
         residual = {
             name: rows - traces[name][0] if name in traces else rows
             for name, rows in odd.residual.items()

@@ -1,0 +1,263 @@
+"""Forces of the ground that nobody measured, eliminated from the equations of motion.
+
+Where feet touch and a log does not tell the force on a foot, or not where under the foot it acts,
+the ground pushes with generalised forces A w that are unknown in size alone: w are forces on
+points, and wrenches on feet with more than one pad. With the residuals r of the floating base and
+the joints,
+
+    r_joints - A_joints A_base^+ r_base
+
+is free of all w that the base feels: of the whole wrench on a foot that stands alone. What is left,
+L w with L = A_joints (1 - A_base^+ A_base), are feet that push against each other. As many joints
+are spent on it as have independent rows of L: their rows tell w, and the rows of the other joints
+are free of it. What moves all joints little (a foot that turns on the spot, where no joint turns
+with it) is left in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hyperleg_design.gap.model.frames import joint_frames
+from hyperleg_design.gap.model.pads import pad_points
+from hyperleg_design.gap.model.subject import Subject
+from hyperleg_design.gap.signals.contact import Ground
+
+WEAK = 0.1
+"""Torque of an unknown force at a joint, over the largest at any joint, from which it is eliminated
+[-] (assumed: torques of that size are left where masses are off by some per cent)."""
+ALONG = 0.3
+"""Force along the ground, and moment about its normal, over those across it, as is usual [-]
+(assumed)."""
+SHARE = 0.1
+"""Share of another joint's residual in a row from which its rest is that of the row [-]
+(assumed)."""
+MOST = 3.0
+"""Share of a spent joint's residual in another row, up to which that row is used [-] (assumed)."""
+SINGULAR = 1e-3
+"""Singular value over the largest, below which the base does not feel a force [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Elimination:
+    """Combinations of rows that are free of unknown forces, at u of t ticks."""
+
+    ticks: np.ndarray
+    """`(u,)`."""
+    of_joints: np.ndarray
+    """Weights of the joints' rows `(u, n, n)`."""
+    of_base: np.ndarray
+    """Weights of the base's rows `(u, n, 6)`."""
+    lost: np.ndarray
+    """Rows that are spent, or not free of unknown forces `(u, n)` of bool."""
+
+    def applied(self, motion: np.ndarray, base: np.ndarray | None) -> np.ndarray:
+        """Combine rows.
+
+        Args:
+            motion: rows of the joints `(..., t, n)` [Nm].
+            base: rows of the base `(..., t, 6)` [N, Nm]; None where they are zero.
+
+        Returns:
+            Rows of the joints `(..., t, n)`.
+        """
+        rows = np.array(motion, float)
+        own = np.nan_to_num(rows[..., self.ticks, :])
+        freed = self.of_joints @ own[..., None]
+        if base is not None:
+            freed += self.of_base @ np.nan_to_num(base[..., self.ticks, :])[..., None]
+        rows[..., self.ticks, :] = freed[..., 0]
+        return rows
+
+    def note(self, joints: Sequence[str]) -> str:
+        """Say what is not judged.
+
+        Args:
+            joints: names of all joints.
+        """
+        spent = self.lost.mean(0) > 0.5
+        names = ", ".join(name for name, own in zip(joints, spent, strict=True) if own)
+        eliminated = (
+            "forces of the ground that are not logged, or not where they act, are eliminated"
+        )
+        return eliminated + (
+            f": {names} tell them, and their faults show elsewhere" if names else ""
+        )
+
+    def pushed(self, base: np.ndarray | None, ticks: int) -> np.ndarray:
+        """Estimate what unknown forces give the joints, from what the base needs.
+
+        Args:
+            base: rows of the base `(t, 6)` [N, Nm]; None of a fixed base.
+            ticks: number t of ticks.
+
+        Returns:
+            `(t, n)` [Nm]; 0 where all forces are known.
+        """
+        torque = np.zeros((ticks, self.lost.shape[1]))
+        if base is not None:
+            torque[self.ticks] = (self.of_base @ base[self.ticks][..., None])[..., 0]
+        return torque
+
+    def anywhere(self, joints: np.ndarray) -> np.ndarray:
+        """Tell in which rows there are joints of some kind.
+
+        Args:
+            joints: `(t, n)` of bool.
+
+        Returns:
+            Rows of such joints, or with a share of one `(t, n)`.
+        """
+        rows = joints.copy()
+        shares = np.abs(self.of_joints) > SHARE
+        rows[self.ticks] = (shares & joints[self.ticks][:, None]).any(-1)
+        return rows
+
+    def freed(self, traces: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Combine the rows of traces as those of the residual.
+
+        Args:
+            traces: by residual `(..., t, rows)`, physical.
+
+        Returns:
+            The same, with `motion` as the residual shows it.
+        """
+        base = traces.get("base")
+        motion = traces.get("motion")
+        if motion is None:
+            if base is None:
+                return dict(traces)
+            motion = np.zeros((*base.shape[:-1], self.lost.shape[1]))
+        return {**traces, "motion": self.applied(motion, base)}
+
+
+def eliminated(
+    subject: Subject,
+    position: np.ndarray,
+    rotation: np.ndarray | None,
+    ground: Ground,
+    unmeasured: np.ndarray,
+    margin: int,
+) -> Elimination | None:
+    """Find combinations of rows that are free of unknown forces.
+
+    Args:
+        subject: the robot.
+        position: of the joints `(t, n)` [rad].
+        rotation: world from base `(t, 3, 3)`; None of a fixed base.
+        ground: contact of the log.
+        unmeasured: joints whose torque or motion nobody measured `(t, n)`.
+        margin: ticks around a change of what is unknown, which are left out.
+
+    Returns:
+        The combinations; None where all forces are known.
+    """
+    no_force, no_place = ground.unknown(subject)
+    kinds = no_force + 2 * no_place
+    parts = []
+    for kind, ticks in _stances(kinds, margin) if kinds.any() else ():
+        upright = None if rotation is None else rotation[ticks]
+        pushes, inside = _pushes(subject, position[ticks], upright, kind)
+        parts.append((ticks, *_combined(pushes, inside, rotation is not None)))
+    if not parts:
+        return None
+    ticks, of_joints, of_base, lost = (
+        np.concatenate(column) for column in zip(*parts, strict=True)
+    )
+    order = np.argsort(ticks)
+    ticks, of_joints, of_base, lost = ticks[order], of_joints[order], of_base[order], lost[order]
+    lost |= ((of_joints != 0) & unmeasured[ticks][:, None]).any(-1)
+    return Elimination(ticks, of_joints, of_base, lost)
+
+
+def _stances(kinds: np.ndarray, margin: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """What is unknown of each foot `(f,)`, and the ticks where that holds and does not change
+    soon.
+    """
+    changed = np.append((kinds[1:] != kinds[:-1]).any(1), False).astype(float)
+    near = np.convolve(changed, np.ones(2 * margin + 1), "same") > 0.5
+    for kind in np.unique(kinds, axis=0):
+        ticks = np.flatnonzero((kinds == kind).all(1) & ~near)
+        if kind.any() and len(ticks):
+            yield kind, ticks
+
+
+def _pushes(
+    subject: Subject, position: np.ndarray, rotation: np.ndarray | None, kind: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Generalised forces of unit unknown forces, base first `(t, 6 + n, u)`, each in a size that is
+    usual; and joints within a foot that are unknown in any case `(n,)`.
+    """
+    tree, count = subject.tree, len(position)
+    upright = np.broadcast_to(np.eye(3), (count, 3, 3)) if rotation is None else rotation
+    into = np.swapaxes(upright, -1, -2)
+    frames, points = joint_frames(tree, position), pad_points(subject, position, upright)
+    columns, inside = [], np.zeros(tree.count, bool)
+    for foot in np.flatnonzero(kind).tolist():
+        own = np.flatnonzero(subject.pad_foot == foot)
+        chains = [set(tree.chain_to(subject.pads[pad].link)) for pad in own]
+        chain = sorted(set.intersection(*chains))
+        inside[sorted(set.union(*chains) - set(chain))] = True
+        at = points[:, own].mean(1)
+        reach = float(np.linalg.norm(points[:, own] - at[:, None], axis=-1).max())
+        for axis, size in zip(np.eye(3), (ALONG, ALONG, 1.0), strict=True):
+            local = into @ axis
+            if kind[foot] == 1:
+                push = np.zeros((count, 6 + tree.count))
+                push[:, :3], push[:, 3:6] = local, np.cross(at, local)
+                for j in chain:
+                    axes, origin = frames[j]
+                    arm = np.cross(axes[..., 2], at - origin) if tree.hinge[j] else axes[..., 2]
+                    push[:, 6 + j] = np.sum(arm * local, -1)
+                columns.append(size * push)
+            if len(own) > 1:
+                twist = np.zeros((count, 6 + tree.count))
+                twist[:, 3:6] = local
+                for j in chain:
+                    if tree.hinge[j]:
+                        twist[:, 6 + j] = np.sum(frames[j][0][..., 2] * local, -1)
+                columns.append(ALONG / size * reach * twist)
+    return np.stack(columns, -1), inside
+
+
+def _combined(
+    columns: np.ndarray, inside: np.ndarray, floating: bool
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Weights of the joints' rows and of the base's, and rows that are lost."""
+    count, joints = len(columns), columns.shape[1] - 6
+    base, own = columns[:, :6] * floating, columns[:, 6:]
+    told = np.linalg.pinv(base, rcond=SINGULAR)
+    of_base = -own @ told
+    left = own + of_base @ base
+    size = float(np.sqrt(np.mean(np.sum(own**2, -1), axis=0).max()))
+    spent = _spent(left, WEAK * size)
+    of_joints = np.broadcast_to(np.eye(joints), (count, joints, joints)).copy()
+    lost = np.broadcast_to(inside, (count, joints)).copy()
+    if len(spent):
+        taken = left @ np.linalg.pinv(left[:, spent], rcond=SINGULAR)
+        of_joints[:, :, spent] -= taken
+        lost |= (np.abs(taken) > MOST).any(-1)
+        left = left - taken @ left[:, spent]
+        lost[:, spent] = True
+    lost |= np.linalg.norm(left, axis=-1) > WEAK * size
+    return of_joints, of_joints @ of_base, lost
+
+
+def _spent(left: np.ndarray, least: float) -> list[int]:
+    """Joints whose rows tell unknown forces that the base does not, by Cholesky's method with
+    pivots, down to the least torque of such a force.
+    """
+    gram = np.einsum("tiu,tju->ij", left, left) / len(left)
+    distal = 1 + 1e-3 * np.arange(len(gram))  # of rows that tell as much, the one near the foot
+    spent: list[int] = []
+    while len(spent) < min(left.shape[1:]):
+        size = np.diag(gram)
+        joint = int(np.argmax(size * distal))
+        if size[joint] <= least**2:
+            break
+        gram = gram - np.outer(gram[:, joint], gram[joint]) / size[joint]
+        spent.append(joint)
+    return spent
