@@ -3,6 +3,7 @@ found.
 """
 
 import pytest
+import robots
 
 from hyperleg_design.evaluation.evaluate import evaluate
 from hyperleg_design.evaluation.protocol import Steady, WalkProtocol
@@ -63,3 +64,22 @@ def test_what_an_overlay_adds_is_found(tmp_path, effect, location, parameter, va
     found = diagnose(tmp_path / "logs" / logs[0].metadata.robot, logs, threads=2)
     assert [(cause.effect, cause.location) for cause in found.causes] == [(effect, location)]
     assert found.causes[0].parameters[parameter].value == pytest.approx(value, rel=0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("effect", "location", "parameter", "value"),
+    [
+        ("viscous_friction", "left_knee", "damping", 2.0),
+        ("torque_constant", "left_knee", "scale", 0.8),
+        ("payload", "pelvis", "mass", 3.0),
+    ],
+)
+def test_forces_under_the_feet_need_not_be_logged(tmp_path, effect, location, parameter, value):
+    overlay = Overlay("hyperleg", {(effect, location): {parameter: value}}, {})
+    logs = walked(tmp_path, overlay.alterations(load_design("toe")), trials=2)
+    blind = [robots.without(log, "contact_force") for log in logs]
+    found = diagnose(tmp_path / "logs" / logs[0].metadata.robot, blind, threads=2)
+    assert [(cause.effect, cause.location) for cause in found.causes] == [(effect, location)]
+    closest = found.causes[0].parameters[parameter]
+    assert closest.low <= value <= closest.high
