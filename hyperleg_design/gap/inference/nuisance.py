@@ -62,6 +62,9 @@ TARGETS_AGED, OF_STEP = "target_age", 0.29
 """Age of targets at the moment when a row's positions and torques are measured, where they are kept
 from row to row, beyond half a step; and its deviation over the step [-] (derived: anywhere within
 the step, as a program may log before it sends a target, or after)."""
+TARGETS_LATE = "target_delay"
+"""Delay of targets alone on their way to controllers that know their joints' state at once; its
+deviation is `lateness` [s]."""
 BACK_EMF, OF_ROTOR = "back_emf", 0.7
 """Torque that a current loop gives up to the changing back-EMF of its motor: short of the command
 by an inertia times the acceleration, K_t^2 / (R w) for a loop of bandwidth w, which is the rotor's
@@ -79,6 +82,7 @@ UNLISTED = (
     STEPPED,
     FILTERED,
     TARGETS_AGED,
+    TARGETS_LATE,
     BACK_EMF,
     TORQUE_ZERO,
 )
@@ -157,7 +161,8 @@ def nuisance_parameters(
     late, driven = lateness(step), set(driven_motors(subject))
     parameters += usual.of("robot")
     parameters += [
-        NuisanceParameter(effect, ROBOT, 0, late) for effect in (TORQUES_LATE, FORCES_LATE)
+        NuisanceParameter(effect, ROBOT, 0, late)
+        for effect in (TORQUES_LATE, FORCES_LATE, TARGETS_LATE)
     ]
     parameters += [
         NuisanceParameter(STEPPED, ROBOT, 0, OF_STEPPED),

@@ -32,6 +32,7 @@ from hyperleg_design.gap.inference.nuisance import (
     SWINGS,
     SWUNG,
     TARGETS_AGED,
+    TARGETS_LATE,
     TOLD_LATE,
     TORQUE_ZERO,
     TORQUES_LATE,
@@ -157,22 +158,32 @@ def _filtered(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarra
     return _asked(signals, np.where(np.isfinite(subject.supply), 0.0, asked))
 
 
+def _late_targets(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
+    """Trace of `TARGETS_LATE`: torque that controllers ask for by older targets."""
+    return {} if signals.target is None else _asked(signals, _by_older_targets(signals, error))
+
+
 def _aged(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
-    """Trace of `TARGETS_AGED`: torque that controllers ask for by older targets. A torque that is
-    measured at one moment of the step differs as much from the mean, which moves the robot.
+    """Trace of `TARGETS_AGED`: as of late targets; and a torque that is measured at one moment of
+    the step differs as much from the mean, which moves the robot.
     """
     if signals.target is None or not are_kept(signals.log):
         return {}
-    subject = signals.subject
-    stiffness, _ = _gains(subject)
-    older = -error.spread * first_derivative(signals.target.T, signals.step).T
-    asked = np.nan_to_num(applied(subject.motor_from_joint, stiffness * older))
+    asked = _by_older_targets(signals, error)
     traced = _asked(signals, asked)
     sampled = [is_measured(signals, m) and is_commanded(signals, m) for m in range(asked.shape[1])]
     if any(sampled):
-        motion = np.where(sampled, asked, 0.0) @ subject.joint_from_motor.T
+        motion = np.where(sampled, asked, 0.0) @ signals.subject.joint_from_motor.T
         traced["motion"] = traced.get("motion", 0.0) + motion
     return traced
+
+
+def _by_older_targets(signals: Signals, error: NuisanceParameter) -> np.ndarray:
+    """Change of what controllers ask motors for by older targets `(t, m)` [Nm]."""
+    assert signals.target is not None
+    stiffness, _ = _gains(signals.subject)
+    older = -error.spread * first_derivative(signals.target.T, signals.step).T
+    return np.nan_to_num(applied(signals.subject.motor_from_joint, stiffness * older))
 
 
 def _gains(subject: Subject) -> np.ndarray:
@@ -267,6 +278,7 @@ _OWN = {
     STEPPED: _stepped,
     FILTERED: _filtered,
     TARGETS_AGED: _aged,
+    TARGETS_LATE: _late_targets,
     BACK_EMF: _back_emf,
     TORQUE_ZERO: _zero,
     **dict.fromkeys(SPEEDS, _speeds),

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 import robots
 
+from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.gap.inference.nuisance import (
     BACK_EMF,
     FILTERED,
@@ -17,6 +19,7 @@ from hyperleg_design.gap.inference.nuisance import (
     STEPPED,
     SWUNG,
     TARGETS_AGED,
+    TARGETS_LATE,
     TOLD_LATE,
     TORQUES_LATE,
     TURNOVER,
@@ -147,6 +150,19 @@ def test_torques_of_kept_targets_may_be_measured_at_either_end_of_the_step(tmp_p
     moving = signals.log.changed(metadata=replace(log.metadata, targets="moving"))
     (signals,) = diagnosed.conditioned(path, moving)
     assert traces(signals, errors)[place] == {}
+
+
+def test_targets_that_are_late_by_themselves_are_a_usual_error(geared):
+    """As the catalogue's delay of targets alone, of a millisecond."""
+    signals = diagnosed.conditioned(geared, targets_alone(1))[0]
+    errors = nuisance_parameters(signals.subject, signals.step)
+    place = next(i for i, e in enumerate(errors) if e.effect == TARGETS_LATE)
+    assert errors[place].spread == lateness(signals.step)
+    found = traces(signals, errors)[place]
+    late = EFFECTS["command_delay"].trace(signals, "robot", np.array([[1e-3, 1.0]]))
+    assert set(found) == set(late) == {"motion"}
+    expected = late["motion"][0, 20:-20] / 1e-3 * errors[place].spread
+    assert np.std(found["motion"][20:-20] - expected) < 0.1 * np.std(expected)
 
 
 CONSTANT, RESISTANCE, INDUCTANCE, BANDWIDTH = 0.09, 0.2, 1e-4, 2 * np.pi * 150

@@ -19,9 +19,9 @@ from hyperleg_design.gap.signals.inertial import sensed
 from hyperleg_design.gap.signals.signals import OF_SENSORS, Signals
 from hyperleg_design.simulation.alteration import Alteration
 
-SQUARE = 0.0035
-"""Usual angle of an IMU against the axes that its robot's file states [rad]: a fifth of a degree
-(assumed)."""
+SQUARE = 0.01
+"""Usual angle of an IMU against the axes that its robot's file states [rad]: half a degree about
+each axis, of brackets and boards (assumed)."""
 
 
 class TurnedImu(Effect):

@@ -4,7 +4,7 @@ A pad that sticks may have any tangential force within its friction cone, and on
 rubber as in soft contacts, has one that grows with its speed. But a foot that slides has the same
 ratio of tangential force to load at any speed: the friction coefficient mu, which some tenths of a
 second tell to a few per cent. Masses, drives and soles do not enter. The friction pyramid of a
-simulator has another ratio in every direction, which is not taken for a slippery ground.
+simulator has another ratio in every direction, and one along its edges.
 """
 
 from __future__ import annotations
@@ -28,15 +28,16 @@ SLIPS = "slips"
 
 @dataclass(frozen=True, eq=False)
 class _Sliding:
-    """A foot's contacts at the ticks `k` at which they slide, in one log."""
+    """A foot's contacts at the ticks `k` at which they slide, in one log; of its loads, the larger
+    half, which noise of forces changes least.
+    """
 
     load: np.ndarray
     ratio: np.ndarray
+    """Of tangential force to load; on a pyramid of friction, where that is more alike, of the sum
+    of the force's parts along its edges, which is the same in all directions."""
     speed: np.ndarray
     """Against the tangential force [m/s]."""
-    along_edges: np.ndarray
-    """Ratio of the sum of the force's parts along a pyramid's edges to the load: what is the same
-    in all directions there."""
     time: float
     """For which the foot slides [s]."""
     loaded: np.ndarray
@@ -77,16 +78,7 @@ def _slip(
     if ratio is None:
         return None
     ground = footings(signals[0])[place]
-    edges, ratios = (
-        np.concatenate([getattr(slides, name) for slides in logs])
-        for name in ("along_edges", "ratio")
-    )
-    as_simulated = ground.law.weakest < 1 and _spread(edges) <= _spread(ratios)
-    if (
-        as_simulated
-        and abs(float(np.median(edges)) / ground.friction - 1) <= rules.slippery * USUAL
-    ):
-        return None
+    ratios = np.concatenate([slides.ratio for slides in logs])
     healthy = _coefficient(_all_sliding(references, place, rules), rules)
     usual, unsure = (ground.friction, USUAL) if healthy is None else (healthy, rules.day * USUAL)
     scale = ratio / usual
@@ -201,7 +193,13 @@ def _sliding(signals: Signals, place: int, rules: GroundRules) -> _Sliding | Non
     of = contacts(signals, place, rules)
     if of is None or not of.slides.any():
         return None
-    slides, loaded = of.slides, of.loaded
+    large = of.load >= np.median(of.load[of.loaded])
+    slides, loaded = of.slides & large, of.loaded & large
     time = float(slides.any(1).sum()) * signals.step
-    sliding = of.load[slides], of.ratio[slides], of.against[slides], of.along_edges[slides]
-    return _Sliding(*sliding, time, of.ratio[loaded])
+    if not time:
+        return None
+    pyramid = footings(signals)[place].law.weakest < 1
+    by_edges = pyramid and _spread(of.along_edges[slides]) <= _spread(of.ratio[slides])
+    ratio = of.along_edges if by_edges else of.ratio
+    sliding = of.load[slides], ratio[slides], of.against[slides]
+    return _Sliding(*sliding, time, ratio[loaded])

@@ -123,6 +123,21 @@ def test_the_pyramid_of_a_simulator_is_no_slippery_ground(subject):
     assert found(subject, pushed(subject, pyramid(1.0))) == ()
 
 
+def test_a_slippery_pyramid_is_told_by_its_edges_through_the_noise_of_its_forces(subject):
+    """Of small loads the ratio is noise, and across the edges of the pyramid it is another one."""
+    slippery = pyramid(0.15)
+
+    def noisy(speed, angle):
+        noise = np.random.default_rng(4).standard_normal(len(speed))
+        return slippery(speed, angle) * (1 + 0.08 * noise)
+
+    slid = found(subject, pushed(subject, noisy))
+    assert {foot.foot for foot in slid} == set(subject.feet)
+    for foot in slid:
+        scale = foot.parameters["scale"]
+        assert scale.low < 0.15 < scale.high
+
+
 def test_what_creeps_in_proportion_to_its_force_does_not_slide(subject):
     assert found(subject, pushed(subject, lambda speed, angle: 8.0 * speed)) == ()
 
