@@ -18,7 +18,7 @@ from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import resampled
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
 TOUCHING_FORCE = 2.0
 """Force from which a foot touches [N]; assumed, above the noise of foot sensors."""
@@ -112,8 +112,9 @@ def contacts(
     """
     feet, pads = subject.feet, subject.pads
     pad_names = [p.name for p in pads]
+    named = [_logged_as(subject, foot, log.feet) for foot in range(len(feet))]
     for name in log.feet:
-        if name not in feet and name not in pad_names:
+        if name not in (*feet, *named, *pad_names):
             remedy = f"is no foot of this robot; {meant(name, [*feet, *pad_names])}"
             raise InputError(log.name, "contact_force", name, remedy)
     if not feet:
@@ -128,8 +129,8 @@ def contacts(
         known = log.stack(CONTACT, force_names(names))
         return resampled(log.time, known, ticks).reshape(len(ticks), -1, 3)
 
-    on_pads, on_feet = force(pad_names), force(feet)
-    unlogged = _feet_without_force(subject, log.feet)
+    on_pads, on_feet = force(pad_names), force(named)
+    unlogged = _feet_without_force(subject, named, log.feet)
     if unlogged and base is not None:
         near = _may_touch(subject, position, base)[:, unlogged, None]
         on_feet[:, unlogged] = np.where(near, np.nan, 0.0)
@@ -203,11 +204,23 @@ def foot_chain(subject: Subject, foot: int) -> list[int]:
     return sorted(joints)
 
 
-def _feet_without_force(subject: Subject, logged: Collection[str]) -> list[int]:
+def _logged_as(subject: Subject, foot: int, logged: Collection[str]) -> str:
+    """Name under which a log has the force on a foot: its own, or that of its only shape, whose
+    corners or ends are its pads.
+    """
+    name = subject.feet[foot]
+    shapes = {p.name.rpartition("_")[0] for p in subject.pads if p.foot == foot}
+    (shape,) = shapes if len(shapes) == 1 else (name,)
+    return shape if name not in logged and shape in logged else name
+
+
+def _feet_without_force(
+    subject: Subject, named: Sequence[str], logged: Collection[str]
+) -> list[int]:
     """Indices of the feet for which a log holds neither a force of their own nor one of a pad."""
     return [
         index
-        for index, foot in enumerate(subject.feet)
+        for index, foot in enumerate(named)
         if foot not in logged
         and not any(p.foot == index and p.name in logged for p in subject.pads)
     ]

@@ -3,6 +3,8 @@ import pytest
 import robots
 
 from hyperleg_design.errors import InputError
+from hyperleg_design.gap.logs.log import Log
+from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.playback.replay import replay
 from hyperleg_design.gap.playback.windows import short_windows
 from hyperleg_design.gap.signals.conditioning import condition
@@ -114,3 +116,42 @@ def test_replays_of_stance_and_flight(biped_runs):
         assert np.nanmax(np.abs(position)) < 3e-3
         place = signals.base.position[found.windows.ticks]
         assert np.nanmax(np.abs(found.base[0, ..., :3] - place)) < 3e-3
+
+
+BOXED = """<mujoco><worldbody><body name="trunk" pos="0 0 0.5"><freejoint/>
+<geom size="0.1" mass="4" contype="0" conaffinity="0"/>
+<body name="foot" pos="0 0 -0.4"><joint name="ankle" axis="0 1 0"/>
+<geom name="sole" type="box" size="0.1 0.05 0.02" mass="0.5"/></body></body></worldbody>
+<actuator><motor joint="ankle"/></actuator></mujoco>"""
+
+
+def test_the_force_on_a_foot_of_one_shape_may_bear_its_name(tmp_path):
+    """A box has a pad at each corner; no pad has the name of the box."""
+    path = tmp_path / "robot.xml"
+    path.write_text(BOXED)
+    time = np.arange(0, 1, 0.005)
+    still = {
+        f"contact_force/{{}}_{axis}": np.full_like(time, f)
+        for axis, f in zip("xyz", (1, 2, 44), strict=True)
+    }
+    rest = {
+        "position/ankle": 0.1 * np.sin(6 * time),
+        "motor_torque/ankle": 0.0 * time,
+        **{f"base_orientation/{axis}": np.full_like(time, axis == "w") for axis in "wxyz"},
+        **{f"accelerometer/{axis}": np.full_like(time, 9.81 * (axis == "z")) for axis in "xyz"},
+        **{f"gyro/{axis}": 0.0 * time for axis in "xyz"},
+    }
+    by_foot, by_shape = (
+        Log(
+            "stands",
+            time,
+            rest | {c.format(name): v for c, v in still.items()},
+            Metadata(base="floating"),
+        )
+        for name in ("foot", "sole")
+    )
+    subject = load_subject(str(path), [by_foot])
+    found = [condition(log, subject) for log in (by_foot, by_shape)]
+    assert np.array_equal(found[0].contact, found[1].contact)
+    assert np.isfinite(found[1].contact).all()
+    assert np.array_equal(found[0].residual["base"], found[1].residual["base"], equal_nan=True)
