@@ -66,6 +66,8 @@ def detectable(search: Search, beside: Hypothesis | None = None) -> tuple[Detect
             continue
         effect = EFFECTS[name]
         most = np.abs(effect.bounds(place, subject) - effect.nulls).max(0)
+        of_mass = [p.unit == "kg" for p in effect.parameters]  # no robot bears more than itself
+        most = np.where(of_mass, np.minimum(most, subject.tree.mass), most)
         sizes = [i for i, p in enumerate(effect.parameters) if not p.shape]
         information = search.proposer.information((name, place, standing), scales)
         if isinstance(traced, list):

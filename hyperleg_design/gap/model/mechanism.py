@@ -62,6 +62,11 @@ class Mechanism:
         """The number of joints."""
         return len(self.joints)
 
+    @property
+    def mass(self) -> float:
+        """Mass of all that can move [kg]."""
+        return float(self.base_inertial[0] + self.inertial[:, 0].sum())
+
     def chain(self, joint: int) -> list[int]:
         """List the joints from the base to a joint, itself included.
 

@@ -167,8 +167,8 @@ class Diagnosis:
             [{"effect": effect, "location": place} for effect, place in group]
             for group in self.equivalent
         ]
-        for name in ("remainder", "lacks", "reference_differences"):
-            if content[name] in (None, ()):
+        for name in ("remainder", "lacks"):
+            if content[name] is None:
                 del content[name]
         rounded: dict[str, Any] = _rounded(content)
         return rounded

@@ -121,8 +121,9 @@ def contacts(
         return Ground(None, None, None)
     if not log.feet:
         touching = _may_touch(subject, position, base) if base is not None else None
+        weight = subject.tree.mass * np.linalg.norm(subject.gravity)
         if touching is not None and needed is not None:
-            touching &= (np.linalg.norm(needed, axis=1) > FLIGHT * _weight(subject))[:, None]
+            touching &= (np.linalg.norm(needed, axis=1) > FLIGHT * weight)[:, None]
         return Ground(None, None, touching)
 
     def force(names: list[str] | tuple[str, ...]) -> np.ndarray:
@@ -234,8 +235,3 @@ def _may_touch(subject: Subject, position: np.ndarray, base: BaseMotion) -> np.n
         [height[:, subject.pad_foot == f].min(1) for f in range(len(subject.feet))], 1
     )
     return np.asarray(lowest < lowest.min(1, keepdims=True) + TOUCHING_HEIGHT)
-
-
-def _weight(subject: Subject) -> float:
-    mass = subject.tree.base_inertial[0] + subject.tree.inertial[:, 0].sum()
-    return float(mass * np.linalg.norm(subject.gravity))
