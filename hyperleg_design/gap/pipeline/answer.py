@@ -46,6 +46,8 @@ from hyperleg_design.gap.signals.signals import RESIDUALS
 WORST = -9.99
 """Least share of a gap closed that is stated [-]; a cause that fits other data badly may close far
 less than nothing."""
+AT_END = "is at the end of the range that is tried"
+"""What remarks say of a size that is."""
 
 
 class Answer:
@@ -329,7 +331,7 @@ class Answer:
 
     def ends(self) -> list[str]:
         """Sizes of causes that are at an end of the range that is tried, in words."""
-        texts = []
+        places: dict[tuple[str, str], list[str]] = {}
         hypothesis = self.posterior.hypothesis
         for place, cause in enumerate(hypothesis.causes):
             if cause.effect in UNLISTED:
@@ -338,12 +340,12 @@ class Answer:
             at_end = np.isclose(values, cause.low) | np.isclose(values, cause.high)
             for i in np.flatnonzero(at_end & ~cause.shape & ~np.isclose(values, cause.nulls)):
                 lacking = " in all logs" if cause.standing else ""
-                texts.append(
-                    f"{cause.effect} at {cause.location}{lacking}: {parameters[i].name} "
-                    f"{values[i]:.3g} is at the end of the range that is tried, so something else "
-                    f"may act there"
-                )
-        return texts
+                size = f"{lacking}: {parameters[i].name} {values[i]:.3g}"
+                places.setdefault((cause.effect, size), []).append(cause.location)
+        return [
+            f"{effect} at {', '.join(own)}{size} {AT_END}, so something else may act there"
+            for (effect, size), own in places.items()
+        ]
 
     def provenance(self) -> dict[str, Any]:
         """What made it, of which logs."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hyperleg_design.gap.checks.coverage import REMEDY
+from hyperleg_design.gap.pipeline.answer import AT_END
 from hyperleg_design.gap.pipeline.detected_causes import APART
 from hyperleg_design.gap.playback.added import Changed, Replayed
 from hyperleg_design.gap.playback.measure import Gap
@@ -190,6 +191,7 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
         ]
     if diagnosis["verdict"] == "unknown":
         lines += [f"  {text}" for text in beyond_references(diagnosis)]
+    lines += [f"  {text}" for text in diagnosis.get("checks", ()) if AT_END in text]
     if diagnosis["verdict"] == "none" and (rows := sensitivity_rows(diagnosis)):
         lines.append("  these logs would have shown, nine times in ten, from:")
         lines += [

@@ -148,3 +148,10 @@ def test_a_reference_that_differs_is_told_before_the_causes():
 def test_without_a_cause_only_the_noise_is_told():
     found = diagnosis(verdict="none", causes=[], rivals=[], separating_experiment=None)
     assert diagnosis_text(found).splitlines()[1] == "residuals [Nm]: 0.5, of which noise 0.1"
+
+
+def test_sizes_at_the_end_of_their_range_are_said_to_be():
+    told = "torque_constant at hip, knee: scale 0.3 is at the end of the range that is tried"
+    text = diagnosis_text(diagnosis(checks=[f"{told}, so something else may act there", "other"]))
+    assert f"  {told}, so something else may act there" in text.splitlines()
+    assert "other" not in text
