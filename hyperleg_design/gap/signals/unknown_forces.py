@@ -55,7 +55,7 @@ class Elimination:
     """Rows that are spent, or not free of unknown forces `(u, n)` of bool."""
 
     def applied(self, motion: np.ndarray, base: np.ndarray | None) -> np.ndarray:
-        """Combine rows.
+        """Combine the rows of residuals or traces.
 
         Args:
             motion: rows of the joints `(..., t, n)` [Nm].
@@ -229,8 +229,8 @@ def _combined(
     """Weights of the joints' rows and of the base's, and rows that are lost."""
     count, joints = len(columns), columns.shape[1] - 6
     base, own = columns[:, :6] * floating, columns[:, 6:]
-    told = np.linalg.pinv(base, rcond=SINGULAR)
-    of_base = -own @ told
+    from_base = np.linalg.pinv(base, rcond=SINGULAR)
+    of_base = -own @ from_base
     left = own + of_base @ base
     size = float(np.sqrt(np.mean(np.sum(own**2, -1), axis=0).max()))
     spent = _spent(left, WEAK * size)

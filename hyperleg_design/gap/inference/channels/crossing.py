@@ -59,12 +59,12 @@ class Crossing:
         for channel, before, some, *products in zip(
             channels, self.shown, new.shown, self.cross, self.own, new.cross, new.own, strict=True
         ):
-            kept = before[before < len(known)]
+            first = before[before < len(known)]
             cross, own, new_cross, new_own = products
-            between = channel.crossed_with(known, kept, further, some)
-            own = own[:, : len(kept), : len(kept)]
-            shown.append(np.concatenate([kept, len(known) + some]))
-            crosses.append(np.concatenate([cross[:, :, : len(kept)], new_cross], axis=2))
+            between = channel.crossed_with(known, first, further, some)
+            own = own[:, : len(first), : len(first)]
+            shown.append(np.concatenate([first, len(known) + some]))
+            crosses.append(np.concatenate([cross[:, :, : len(first)], new_cross], axis=2))
             owns.append(np.block([[own, between], [between.transpose(0, 2, 1), new_own]]))
         return Crossing(len(known) + new.count, tuple(shown), tuple(crosses), tuple(owns))
 

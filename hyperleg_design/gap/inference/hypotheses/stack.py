@@ -35,7 +35,7 @@ class Stack:
 
     @classmethod
     def of(cls, causes: Sequence[Cause], evidence: Evidence) -> Stack:
-        """Stack causes.
+        """Stack linearised causes one after the other.
 
         Args:
             causes: in their order.
