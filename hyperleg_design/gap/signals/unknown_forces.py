@@ -38,7 +38,11 @@ SHARE = 0.1
 MOST = 3.0
 """Share of a spent joint's residual in another row, up to which that row is used [-] (assumed)."""
 SINGULAR = 1e-3
-"""Singular value over the largest, below which the base does not feel a force [-]."""
+"""Singular value over the largest, below which the base does not feel a force, and share of a row
+below which it is none [-] (numerical)."""
+
+NO_FORCE, NO_PLACE = 1, 2
+"""What nobody measured of a foot: the force on it, or only where it acts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,7 +160,7 @@ def eliminated(
         The combinations; None where all forces are known.
     """
     no_force, no_place = ground.unknown(subject)
-    kinds = no_force + 2 * no_place
+    kinds = NO_FORCE * no_force + NO_PLACE * no_place
     parts = []
     for kind, ticks in _stances(kinds, margin) if kinds.any() else ():
         upright = None if rotation is None else rotation[ticks]
@@ -169,7 +173,7 @@ def eliminated(
     )
     order = np.argsort(ticks)
     ticks, of_joints, of_base, lost = ticks[order], of_joints[order], of_base[order], lost[order]
-    lost |= ((of_joints != 0) & unmeasured[ticks][:, None]).any(-1)
+    lost |= ((np.abs(of_joints) > SINGULAR) & unmeasured[ticks][:, None]).any(-1)
     return Elimination(ticks, of_joints, of_base, lost)
 
 
@@ -205,7 +209,7 @@ def _pushes(
         reach = float(np.linalg.norm(points[:, own] - at[:, None], axis=-1).max())
         for axis, size in zip(np.eye(3), (ALONG, ALONG, 1.0), strict=True):
             local = into @ axis
-            if kind[foot] == 1:
+            if kind[foot] == NO_FORCE:
                 push = np.zeros((count, 6 + tree.count))
                 push[:, :3], push[:, 3:6] = local, np.cross(at, local)
                 for j in chain:
