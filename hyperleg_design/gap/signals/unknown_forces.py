@@ -35,6 +35,9 @@ ALONG = 0.3
 SHARE = 0.1
 """Share of another joint's residual in a row from which its rest is that of the row [-]
 (assumed)."""
+LARGE = 0.5
+"""Torque of an unknown force at a joint, over the largest, from which the joint may be spent on it
+[-] (assumed: noise of its row then at most doubles)."""
 MOST = 3.0
 """Share of a spent joint's residual in another row, up to which that row is used [-] (assumed)."""
 SINGULAR = 1e-3
@@ -161,11 +164,12 @@ def eliminated(
     """
     no_force, no_place = ground.unknown(subject)
     kinds = NO_FORCE * no_force + NO_PLACE * no_place
+    depth = np.array([len(subject.tree.chain(joint)) for joint in range(subject.tree.count)])
     parts = []
     for kind, ticks in _stances(kinds, margin) if kinds.any() else ():
         upright = None if rotation is None else rotation[ticks]
         pushes, inside = _pushes(subject, position[ticks], upright, kind)
-        parts.append((ticks, *_combined(pushes, inside, rotation is not None)))
+        parts.append((ticks, *_combined(pushes, inside, depth, rotation is not None)))
     if not parts:
         return None
     ticks, of_joints, of_base, lost = (
@@ -228,7 +232,7 @@ def _pushes(
 
 
 def _combined(
-    columns: np.ndarray, inside: np.ndarray, floating: bool
+    columns: np.ndarray, inside: np.ndarray, depth: np.ndarray, floating: bool
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Weights of the joints' rows and of the base's, and rows that are lost."""
     count, joints = len(columns), columns.shape[1] - 6
@@ -237,7 +241,7 @@ def _combined(
     of_base = -own @ from_base
     left = own + of_base @ base
     size = float(np.sqrt(np.mean(np.sum(own**2, -1), axis=0).max()))
-    spent = _spent(left, WEAK * size)
+    spent = _spent(left, WEAK * size, depth)
     of_joints = np.broadcast_to(np.eye(joints), (count, joints, joints)).copy()
     lost = np.broadcast_to(inside, (count, joints)).copy()
     if len(spent):
@@ -250,18 +254,19 @@ def _combined(
     return of_joints, of_joints @ of_base, lost
 
 
-def _spent(left: np.ndarray, least: float) -> list[int]:
-    """Joints whose rows tell unknown forces that the base does not, by Cholesky's method with
-    pivots, down to the least torque of such a force.
+def _spent(left: np.ndarray, least: float, depth: np.ndarray) -> list[int]:
+    """Joints whose rows tell unknown forces that the base does not, down to the least torque of
+    such a force: by Cholesky's method with pivots, of which the one farthest from the base is taken
+    that is not much smaller than the largest. So it is the same in every log.
     """
     gram = np.einsum("tiu,tju->ij", left, left) / len(left)
-    distal = 1 + 1e-3 * np.arange(len(gram))  # of rows that tell as much, the one near the foot
     spent: list[int] = []
     while len(spent) < min(left.shape[1:]):
         size = np.diag(gram)
-        joint = int(np.argmax(size * distal))
-        if size[joint] <= least**2:
+        if size.max() <= least**2:
             break
+        large = np.flatnonzero(size >= LARGE**2 * size.max())
+        joint = int(large[np.argmax(depth[large] + SINGULAR * large)])
         gram = gram - np.outer(gram[:, joint], gram[joint]) / size[joint]
         spent.append(joint)
     return spent
