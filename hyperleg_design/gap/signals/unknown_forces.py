@@ -9,9 +9,14 @@ the joints,
 
 is free of all w that the base feels: of the whole wrench on a foot that stands alone. What is left,
 L w with L = A_joints (1 - A_base^+ A_base), are feet that push against each other. As many joints
-are spent on it as have independent rows of L: their rows tell w, and the rows of the other joints
-are free of it. What moves all joints little (a foot that turns on the spot, where no joint turns
-with it) is left in.
+are spent on it as L has independent rows. With the projection P across the columns of L and the
+joints k that are left,
+
+    P_kk^(-1/2) P_k
+
+makes rows that are free of w, as near to those of the joints k as rows can be whose noise is
+independent. What moves all joints little (a foot that turns on the spot, where no joint turns with
+it) is left in.
 """
 
 from __future__ import annotations
@@ -35,11 +40,11 @@ ALONG = 0.3
 SHARE = 0.1
 """Share of another joint's residual in a row from which its rest is that of the row [-]
 (assumed)."""
-LARGE = 0.5
+LARGE = 0.9
 """Torque of an unknown force at a joint, over the largest, from which the joint may be spent on it
-[-] (assumed: noise of its row then at most doubles)."""
-MOST = 3.0
-"""Share of a spent joint's residual in another row, up to which that row is used [-] (assumed)."""
+[-] (developed: at 0.5 noise is twice as large, and dry friction of a calf is lost in it)."""
+FREE = 0.05
+"""Least share of a combination of rows, squared, that unknown forces leave free [-] (assumed)."""
 SINGULAR = 1e-3
 """Singular value over the largest, below which the base does not feel a force, and share of a row
 below which it is none [-] (numerical)."""
@@ -245,11 +250,16 @@ def _combined(
     of_joints = np.broadcast_to(np.eye(joints), (count, joints, joints)).copy()
     lost = np.broadcast_to(inside, (count, joints)).copy()
     if len(spent):
-        taken = left @ np.linalg.pinv(left[:, spent], rcond=SINGULAR)
-        of_joints[:, :, spent] -= taken
-        lost |= (np.abs(taken) > MOST).any(-1)
-        left = left - taken @ left[:, spent]
+        rest = np.setdiff1d(np.arange(joints), spent)
+        across = np.linalg.svd(left, full_matrices=False)[0][..., : len(spent)]
+        free = np.eye(joints) - across @ np.swapaxes(across, -1, -2)
+        square, turn = np.linalg.eigh(free[:, rest][:, :, rest])
+        root = (turn / np.sqrt(np.maximum(square, SINGULAR))[:, None]) @ np.swapaxes(turn, -1, -2)
+        of_joints[:, rest] = root @ free[:, rest]
+        of_joints[:, spent] = 0.0
+        lost |= (square < FREE).any(-1, keepdims=True)
         lost[:, spent] = True
+        left = of_joints @ left
     lost |= np.linalg.norm(left, axis=-1) > WEAK * size
     return of_joints, of_joints @ of_base, lost
 
