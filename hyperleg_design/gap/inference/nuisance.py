@@ -16,7 +16,9 @@ import numpy as np
 
 from hyperleg_design.gap.effects import EFFECTS
 from hyperleg_design.gap.effects.placing import ROBOT, driven_motors
+from hyperleg_design.gap.effects.sensors.imu_bias import IMU
 from hyperleg_design.gap.effects.strength import motor_strength
+from hyperleg_design.gap.effects.unlisted.turned_imu import SQUARE
 from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.gap.model.subject import Subject
 
@@ -70,6 +72,8 @@ BACK_EMF, OF_ROTOR = "back_emf", 0.7
 by an inertia times the acceleration, K_t^2 / (R w) for a loop of bandwidth w, which is the rotor's
 over the product of w and the motor's mechanical time constant. 0.7 is the deviation of the ratio
 [-]: time constants of 1 to 3 ms and loops of 100 Hz to 1 kHz give 0.05 to 1.6 (assumed)."""
+IMU_TURNED = "imu_turned"
+"""Small turns of the IMU about its own axes; their deviation is `turned_imu.SQUARE` [rad]."""
 TORQUE_ZERO = "torque_zero"
 """Zero of a torque sensor between gear and link, in each log (`zeros`)."""
 UNLISTED = (
@@ -84,6 +88,7 @@ UNLISTED = (
     TARGETS_AGED,
     TARGETS_LATE,
     BACK_EMF,
+    IMU_TURNED,
     TORQUE_ZERO,
 )
 """Nuisance parameters that belong to no effect of the catalogue, one of each name at a place."""
@@ -109,7 +114,7 @@ class NuisanceParameter:
         """Whether it is the same in all sessions: masses, rotors, settings of drives, and gains of
         force sensors are.
         """
-        return self.inertial or self.known or self.effect in (FILTERED, BACK_EMF)
+        return self.inertial or self.known or self.effect in (FILTERED, BACK_EMF, IMU_TURNED)
 
     @property
     def known(self) -> bool:
@@ -168,6 +173,10 @@ def nuisance_parameters(
         NuisanceParameter(STEPPED, ROBOT, 0, OF_STEPPED),
         NuisanceParameter(FILTERED, ROBOT, 0, OF_FILTER),
         NuisanceParameter(TARGETS_AGED, ROBOT, 0, OF_STEP * step),
+    ]
+    parameters += [
+        NuisanceParameter(IMU_TURNED, IMU, axis, SQUARE)
+        for axis in (range(3) if subject.floating else ())
     ]
     parameters += [
         NuisanceParameter(effect, foot, 0, SOLES)

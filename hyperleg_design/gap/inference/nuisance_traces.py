@@ -19,6 +19,7 @@ from hyperleg_design.gap.effects.placing import (
 )
 from hyperleg_design.gap.effects.series import first_derivative
 from hyperleg_design.gap.effects.transmissions import belt
+from hyperleg_design.gap.effects.unlisted.turned_imu import TurnedImu
 from hyperleg_design.gap.effects.usual import least_friction
 from hyperleg_design.gap.inference.nuisance import (
     BACK_EMF,
@@ -26,6 +27,7 @@ from hyperleg_design.gap.inference.nuisance import (
     FORCES_LATE,
     FORCES_SCALED,
     GEARED,
+    IMU_TURNED,
     SOLE_GIVES,
     SPEEDS,
     STEPPED,
@@ -219,6 +221,12 @@ def _back_emf(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarra
     return _alone(before_measurement(signals, {motor: missing[None]}))
 
 
+def _turned_imu(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
+    """Trace of `IMU_TURNED`."""
+    turn = error.spread * np.eye(3)[error.parameter]
+    return _alone(TurnedImu().trace(signals, error.location, turn[None]))
+
+
 def _zero(signals: Signals, error: NuisanceParameter) -> dict[str, np.ndarray]:
     """Trace of `TORQUE_ZERO`: what a sensor reads too much, its motor seems to give and its joint
     not to need.
@@ -280,6 +288,7 @@ _OWN = {
     TARGETS_AGED: _aged,
     TARGETS_LATE: _late_targets,
     BACK_EMF: _back_emf,
+    IMU_TURNED: _turned_imu,
     TORQUE_ZERO: _zero,
     **dict.fromkeys(SPEEDS, _speeds),
 }

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import robots
 
-from hyperleg_design.gap.effects import EFFECTS
+from hyperleg_design.gap.effects import EFFECTS, WEIGHED
 from hyperleg_design.gap.effects.usual import lateness
 from hyperleg_design.gap.inference.nuisance import (
     BACK_EMF,
@@ -15,6 +15,7 @@ from hyperleg_design.gap.inference.nuisance import (
     FORCES_LATE,
     FORCES_SCALED,
     GEARED,
+    IMU_TURNED,
     SOLE,
     STEPPED,
     SWUNG,
@@ -373,3 +374,21 @@ def test_forces_that_are_told_late_show_as_said(biped_runs, stood):
         moved = (wrong.residual[name] - stood.residual[name])[inside]
         error = np.sqrt(np.mean((np.abs(moved) - np.abs(trace[inside])) ** 2))
         assert error < 1e-6 * np.std(moved)
+
+
+def test_an_imu_half_a_degree_off_is_a_usual_error_of_a_floating_base(biped_runs, geared):
+    log = biped_runs["standing"]
+    signals = condition(log, load_subject(None, [log]))
+    errors = nuisance_parameters(signals.subject, signals.step)
+    turns = [i for i, e in enumerate(errors) if e.effect == IMU_TURNED]
+    assert [errors[i].parameter for i in turns] == [0, 1, 2]
+    found = traces(signals, errors)
+    for axis, place in enumerate(turns):
+        turn = errors[place].spread * np.eye(3)[axis]
+        expected = WEIGHED["turned_imu"].trace(signals, "imu", turn[None])
+        assert set(found[place]) == set(expected)
+        for residual_name, rows in expected.items():
+            np.testing.assert_allclose(found[place][residual_name], rows[0])
+    fixed = diagnosed.conditioned(geared, targets_alone(1))[0]
+    errors = nuisance_parameters(fixed.subject, fixed.step)
+    assert not any(error.effect == IMU_TURNED for error in errors)
