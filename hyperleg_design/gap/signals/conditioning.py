@@ -91,17 +91,19 @@ def condition(log: Log, subject: Subject) -> Signals:
         resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step
     )
     ground, needed, of_base = _needed(log, subject, ticks, motion, base, shaken)
-    margin = int(np.ceil(_edge(motion, lacking) / step))
-    unmeasured = lacking | at_stop(subject, motion.value)
-    rotation = None if base is None else base.rotation
-    elimination = eliminated(subject, motion.value, rotation, ground, unmeasured, margin)
-    if of_base is not None and (ground.pad_force is not None or elimination is not None):
-        residual["base"] = np.where(contact.known_of_base(subject, ground), of_base, np.nan)
     behind, before = None if measured is None else behind_gears(log, subject), None
     if behind is not None:
         taken = taken_before(subject, behind, motion, shaken)
         needed, before = needed - taken, applied(subject.motor_from_joint, taken)
     of_motion = applied(subject.joint_from_motor, believed) - needed
+    unmeasured = lacking | at_stop(subject, motion.value) | ~np.isfinite(of_motion)
+    if of_base is not None:
+        unmeasured |= ~np.isfinite(of_base).all(1, keepdims=True)
+    margin = int(np.ceil(_edge(motion, lacking) / step))
+    rotation = None if base is None else base.rotation
+    elimination = eliminated(subject, motion.value, rotation, ground, unmeasured, margin)
+    if of_base is not None and (ground.pad_force is not None or elimination is not None):
+        residual["base"] = np.where(contact.known_of_base(subject, ground), of_base, np.nan)
     unknown = contact.unknown_rows(subject, ground, margin) | unmeasured
     if elimination is not None:
         of_motion = elimination.applied(of_motion, of_base)

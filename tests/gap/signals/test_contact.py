@@ -155,3 +155,19 @@ def test_the_force_on_a_foot_of_one_shape_may_bear_its_name(tmp_path):
     assert np.array_equal(found[0].contact, found[1].contact)
     assert np.isfinite(found[1].contact).all()
     assert np.array_equal(found[0].residual["base"], found[1].residual["base"], equal_nan=True)
+
+
+def test_rows_that_need_a_torque_that_nobody_measured_are_unknown(biped_runs):
+    """Without forces under two feet, rows of several joints are combined."""
+    log = robots.without(biped_runs["standing"], "contact_force")
+    known = conditioned(log)
+    knee = known.subject.joints.index("left_knee")
+    dropped = {"joint_torque/left_knee", "position_target/left_knee"}
+    less = conditioned(
+        log.changed(signals={c: v for c, v in log.signals.items() if c not in dropped})
+    )
+    without = less.elimination
+    needs = np.abs(without.of_joints[:, :, knee]) > 1e-2
+    rows = less.residual["motion"][without.ticks]
+    assert np.isnan(rows[needs]).all()
+    assert len(judged(less)) < len(judged(known))
