@@ -17,12 +17,12 @@ from hyperleg_design.gap.effects.strength import joint_strength, motor_strength
 from hyperleg_design.gap.inference.rules import NoiseRules
 from hyperleg_design.gap.inference.white_noise import white_density
 from hyperleg_design.gap.model import rigid
+from hyperleg_design.gap.model.friction import stop
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.filtering import Band, FilteredLog
 from hyperleg_design.gap.signals.ground import footings
 from hyperleg_design.gap.signals.signals import OF_SENSORS, Signals
 from hyperleg_design.gap.signals.sliding import dry_friction_in
-from hyperleg_design.gap.signals.stop_operator import stop
 from hyperleg_design.memoized import memoized
 
 FAST = 10.0

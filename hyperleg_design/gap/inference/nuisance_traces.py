@@ -44,13 +44,13 @@ from hyperleg_design.gap.inference.nuisance import (
     NuisanceParameter,
 )
 from hyperleg_design.gap.model import friction, pads
+from hyperleg_design.gap.model.friction import stop
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.conditioning import are_kept
 from hyperleg_design.gap.signals.filtering import FilteredLog
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import dry_friction, sliding
-from hyperleg_design.gap.signals.stop_operator import stop
 from hyperleg_design.gap.signals.transmission import turned
 from hyperleg_design.simulation.drives.actuation import friction_damping
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hyperleg_design.gap.model.frames import joint_frames, link_poses
+from hyperleg_design.gap.model.mechanism import Mechanism
 from hyperleg_design.gap.model.subject import Subject
 
 
@@ -40,12 +41,28 @@ def contact_torque(
     torque = np.zeros((len(position), tree.count))
     for row, pad in enumerate(subject.pads):
         for j in tree.chain_to(pad.link):
-            axes, origin = frames[j]
-            arm = points[:, row] - origin if tree.hinge[j] else None
-            column = np.cross(axes[..., 2], arm) if arm is not None else axes[..., 2]
-            torque[:, j] += np.einsum("ti,ti->t", column, local[:, row])
+            lever = joint_lever(tree, frames, j, points[:, row])
+            torque[:, j] += np.einsum("ti,ti->t", lever, local[:, row])
     moment = np.cross(points, local).sum(1)
     return torque, np.concatenate([local.sum(1), moment], -1)
+
+
+def joint_lever(
+    tree: Mechanism, frames: list[tuple[np.ndarray, np.ndarray]], joint: int, point: np.ndarray
+) -> np.ndarray:
+    """Compute the torque at a joint of unit forces at a point beyond it.
+
+    Args:
+        tree: the robot.
+        frames: of its joints, `joint_frames`.
+        joint: index of the joint.
+        point: in the base's frame `(t, 3)` [m].
+
+    Returns:
+        Along each axis of the base `(t, 3)` [m]; of a joint that slides, its axis [-].
+    """
+    axes, origin = frames[joint]
+    return np.cross(axes[..., 2], point - origin) if tree.hinge[joint] else axes[..., 2]
 
 
 def pad_points(subject: Subject, position: np.ndarray, rotation: np.ndarray) -> np.ndarray:

@@ -101,10 +101,10 @@ def condition(log: Log, subject: Subject) -> Signals:
         unmeasured |= ~np.isfinite(of_base).all(1, keepdims=True)
     margin = int(np.ceil(_edge(motion, lacking) / step))
     rotation = None if base is None else base.rotation
-    elimination = eliminated(subject, motion.value, rotation, ground, unmeasured, margin)
+    elimination = eliminated(motion.value, rotation, ground, unmeasured, margin)
     if of_base is not None and (ground.pad_force is not None or elimination is not None):
-        residual["base"] = np.where(contact.known_of_base(subject, ground), of_base, np.nan)
-    unknown = contact.unknown_rows(subject, ground, margin) | unmeasured
+        residual["base"] = np.where(contact.known_of_base(ground), of_base, np.nan)
+    unknown = contact.unknown_rows(ground, margin) | unmeasured
     if elimination is not None:
         of_motion = elimination.applied(of_motion, of_base)
         needed = needed - elimination.pushed(of_base, len(ticks))
@@ -152,7 +152,7 @@ def condition(log: Log, subject: Subject) -> Signals:
         valid=valid,
         residual=residual,
         pad_force=ground.pad_force,
-        pushing=ground.pushing(subject),
+        pushing=ground.pushing,
         elimination=elimination,
         touching=ground.touching,
         bandwidth=motion.crossover / (2 * np.pi),
@@ -189,11 +189,10 @@ def _needed(
     needed = rigid.inverse_dynamics(subject, *moved, base) + friction.friction_torque(
         subject, motion.value, motion.first, None if shaken is None else shaken.speed
     )
-    force = ground.pushing(subject)
-    if force is None:
+    if ground.pushing is None:
         return ground, needed, None if own is None else -own
     rotation = None if base is None else base.rotation
-    pushed, wrench = pads.contact_torque(subject, motion.value, rotation, force)
+    pushed, wrench = pads.contact_torque(subject, motion.value, rotation, ground.pushing)
     return ground, needed - pushed, None if own is None else wrench - own
 
 

@@ -5,6 +5,7 @@ may.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,48 +36,38 @@ assumed."""
 class Ground:
     """What a log knows of the ground, `t` ticks."""
 
-    foot_force: np.ndarray | None
+    subject: Subject
+    foot_force: np.ndarray | None = None
     """World frame `(t, f, 3)` [N]."""
-    pad_force: np.ndarray | None
+    pad_force: np.ndarray | None = None
     """World frame `(t, P, 3)` [N]; NaN on the pads of a foot while it touches and the place of its
     force is unknown."""
-    touching: np.ndarray | None
+    touching: np.ndarray | None = None
     """Feet that touch, or may `(t, f)`; None of a fixed base without contact forces."""
 
-    def unknown(self, subject: Subject) -> tuple[np.ndarray, np.ndarray]:
-        """Find feet about whose force this log does not tell all.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            Feet that touch, or may, with an unknown force, and those whose force is known, but not
-            where under the foot it acts `(t, f)`; `(1, f)` of a fixed base without forces.
+    @cached_property
+    def unknown(self) -> tuple[np.ndarray, np.ndarray]:
+        """Feet that touch, or may, with an unknown force, and those whose force is known, but not
+        where under the foot it acts `(t, f)`; `(1, f)` of a fixed base without forces.
         """
-        feet = len(subject.feet)
+        feet = len(self.subject.feet)
         if self.touching is None or self.pad_force is None or self.foot_force is None:
             none = np.zeros((1, feet), bool)
             return none if self.touching is None else self.touching, none
-        lost = ~np.isfinite(self.pad_force).all(-1)
-        unknown = np.stack([lost[:, subject.pad_foot == f].any(1) for f in range(feet)], 1)
+        lost, foot_of = ~np.isfinite(self.pad_force).all(-1), self.subject.pad_foot
+        unknown = np.stack([lost[:, foot_of == foot].any(1) for foot in range(feet)], 1)
         force = np.isfinite(self.foot_force).all(-1)
         return unknown & ~force, unknown & force
 
-    def pushing(self, subject: Subject) -> np.ndarray | None:
-        """Look up the force on each pad, or its equal share of what its foot feels where nobody
-        measured where that acts; 0 where it is unknown.
-
-        Args:
-            subject: the robot.
-
-        Returns:
-            World frame `(t, P, 3)` [N]; None without contact forces.
+    @cached_property
+    def pushing(self) -> np.ndarray | None:
+        """Force on each pad, or its equal share of what its foot feels where nobody measured where
+        that acts; 0 where it is unknown. In the world `(t, P, 3)` [N]; None without contact forces.
         """
         if self.pad_force is None or self.foot_force is None:
             return None
-        shares = self.foot_force[:, subject.pad_foot] / np.bincount(subject.pad_foot)[
-            subject.pad_foot
-        ].reshape(-1, 1)
+        foot_of = self.subject.pad_foot
+        shares = self.foot_force[:, foot_of] / np.bincount(foot_of)[foot_of][:, None]
         known = np.isfinite(self.pad_force).all(-1, keepdims=True)
         return np.nan_to_num(np.where(known, self.pad_force, shares))
 
@@ -118,13 +109,13 @@ def contacts(
             remedy = f"is no foot of this robot; {meant(name, [*feet, *pad_names])}"
             raise InputError(log.name, "contact_force", name, remedy)
     if not feet:
-        return Ground(None, None, None)
+        return Ground(subject)
     if not log.feet:
         touching = _may_touch(subject, position, base) if base is not None else None
         weight = subject.tree.mass * np.linalg.norm(subject.gravity)
         if touching is not None and needed is not None:
             touching &= (np.linalg.norm(needed, axis=1) > FLIGHT * weight)[:, None]
-        return Ground(None, None, touching)
+        return Ground(subject, touching=touching)
 
     def force(names: list[str] | tuple[str, ...]) -> np.ndarray:
         known = log.stack(CONTACT, force_names(names))
@@ -148,43 +139,52 @@ def contacts(
             on_feet[:, foot] if len(own) == 1 else np.where(touching[:, foot, None], np.nan, 0.0)
         )
         on_pads[:, own] = np.where(missing[:, None, None], shared[:, None], on_pads[:, own])
-    return Ground(total, on_pads, touching)
+    return Ground(subject, total, on_pads, touching)
 
 
-def unknown_rows(subject: Subject, ground: Ground, margin: int) -> np.ndarray:
+def unknown_rows(ground: Ground, margin: int) -> np.ndarray:
     """Find the joint rows that an unknown force of the ground reaches.
 
     Args:
-        subject: the robot.
         ground: contact of the log.
         margin: ticks by which the rows are widened.
 
     Returns:
         `(t, n)`; `(1, n)` where there is none.
     """
-    unknown = np.logical_or(*ground.unknown(subject))
-    if not unknown.any():
-        return np.zeros((1, len(subject.joints)), bool)
-    chains = [foot_chain(subject, foot) for foot in range(len(subject.feet))]
+    subject, unknown = ground.subject, np.logical_or(*ground.unknown)
     out = np.zeros((len(unknown), len(subject.joints)), bool)
-    for foot, chain in enumerate(chains):
-        wide = np.convolve(unknown[:, foot], np.ones(2 * margin + 1), "same") > 0.5
-        out[:, chain] |= wide[:, None]
+    for foot, wide in enumerate(widened(unknown, margin).T):
+        out[:, foot_chain(subject, foot)] |= wide[:, None]
     return out
 
 
-def known_of_base(subject: Subject, ground: Ground) -> np.ndarray:
+def widened(ticks: np.ndarray, margin: int) -> np.ndarray:
+    """Add the ticks around some.
+
+    Args:
+        ticks: `(t, ...)` of bool.
+        margin: how many to either side.
+
+    Returns:
+        The same, widened.
+    """
+    from scipy.ndimage import maximum_filter1d
+
+    return np.asarray(maximum_filter1d(ticks.astype(np.uint8), 2 * margin + 1, axis=0) > 0)
+
+
+def known_of_base(ground: Ground) -> np.ndarray:
     """Find the rows of a floating base that known forces of the ground explain: all where all is
     known, those of forces where nobody knows where these act.
 
     Args:
-        subject: the robot.
         ground: contact of the log.
 
     Returns:
         `(t, 6)`, or `(1, 6)`.
     """
-    force, place = (feet.any(1, keepdims=True) for feet in ground.unknown(subject))
+    force, place = (feet.any(1, keepdims=True) for feet in ground.unknown)
     return np.repeat(np.concatenate([~force, ~force & ~place], 1), 3, axis=1)
 
 

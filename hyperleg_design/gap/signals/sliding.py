@@ -17,10 +17,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from hyperleg_design.gap.model.friction import sliding_share
+from hyperleg_design.gap.model.friction import sliding_share, stop
 from hyperleg_design.gap.signals.limit_cycle import PRESLIDING
 from hyperleg_design.gap.signals.signals import Signals
-from hyperleg_design.gap.signals.stop_operator import stop
 from hyperleg_design.memoized import memoized
 
 NOISES = 8.0

@@ -27,9 +27,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hyperleg_design.gap.model.frames import joint_frames
-from hyperleg_design.gap.model.pads import pad_points
+from hyperleg_design.gap.model.pads import joint_lever, pad_points
 from hyperleg_design.gap.model.subject import Subject
-from hyperleg_design.gap.signals.contact import Ground
+from hyperleg_design.gap.signals.contact import Ground, widened
 
 WEAK = 0.1
 """Torque of an unknown force at a joint, over the largest at any joint, from which it is eliminated
@@ -147,7 +147,6 @@ class Elimination:
 
 
 def eliminated(
-    subject: Subject,
     position: np.ndarray,
     rotation: np.ndarray | None,
     ground: Ground,
@@ -157,7 +156,6 @@ def eliminated(
     """Find combinations of rows that are free of unknown forces.
 
     Args:
-        subject: the robot.
         position: of the joints `(t, n)` [rad].
         rotation: world from base `(t, 3, 3)`; None of a fixed base.
         ground: contact of the log.
@@ -167,7 +165,7 @@ def eliminated(
     Returns:
         The combinations; None where all forces are known.
     """
-    no_force, no_place = ground.unknown(subject)
+    subject, (no_force, no_place) = ground.subject, ground.unknown
     kinds = NO_FORCE * no_force + NO_PLACE * no_place
     depth = np.array([len(subject.tree.chain(joint)) for joint in range(subject.tree.count)])
     parts = []
@@ -190,8 +188,7 @@ def _stances(kinds: np.ndarray, margin: int) -> Iterator[tuple[np.ndarray, np.nd
     """What is unknown of each foot `(f,)`, and the ticks where that holds and does not change
     soon.
     """
-    changed = np.append((kinds[1:] != kinds[:-1]).any(1), False).astype(float)
-    near = np.convolve(changed, np.ones(2 * margin + 1), "same") > 0.5
+    near = widened(np.append((kinds[1:] != kinds[:-1]).any(1), False), margin)
     for kind in np.unique(kinds, axis=0):
         ticks = np.flatnonzero((kinds == kind).all(1) & ~near)
         if kind.any() and len(ticks):
@@ -206,7 +203,7 @@ def _pushes(
     """
     tree, count = subject.tree, len(position)
     upright = np.broadcast_to(np.eye(3), (count, 3, 3)) if rotation is None else rotation
-    into = np.swapaxes(upright, -1, -2)
+    from_world = np.swapaxes(upright, -1, -2)
     frames, points = joint_frames(tree, position), pad_points(subject, position, upright)
     columns, inside = [], np.zeros(tree.count, bool)
     for foot in np.flatnonzero(kind).tolist():
@@ -215,25 +212,18 @@ def _pushes(
         chain = sorted(set.intersection(*chains))
         inside[sorted(set.union(*chains) - set(chain))] = True
         at = points[:, own].mean(1)
-        reach = float(np.linalg.norm(points[:, own] - at[:, None], axis=-1).max())
-        for axis, size in zip(np.eye(3), (ALONG, ALONG, 1.0), strict=True):
-            local = into @ axis
-            if kind[foot] == NO_FORCE:
-                push = np.zeros((count, 6 + tree.count))
-                push[:, :3], push[:, 3:6] = local, np.cross(at, local)
-                for j in chain:
-                    axes, origin = frames[j]
-                    arm = np.cross(axes[..., 2], at - origin) if tree.hinge[j] else axes[..., 2]
-                    push[:, 6 + j] = np.sum(arm * local, -1)
-                columns.append(size * push)
-            if len(own) > 1:
-                twist = np.zeros((count, 6 + tree.count))
-                twist[:, 3:6] = local
-                for j in chain:
-                    if tree.hinge[j]:
-                        twist[:, 6 + j] = np.sum(frames[j][0][..., 2] * local, -1)
-                columns.append(ALONG / size * reach * twist)
-    return np.stack(columns, -1), inside
+        force, moment = np.zeros((2, count, 6 + tree.count, 3))
+        force[:, :3] = moment[:, 3:6] = np.eye(3)
+        force[:, 3:6] = -np.cross(at[:, None], np.eye(3))
+        for j in chain:
+            force[:, 6 + j] = joint_lever(tree, frames, j, at)
+            moment[:, 6 + j] = tree.hinge[j] * frames[j][0][..., 2]
+        if kind[foot] == NO_FORCE:
+            columns.append(force @ (from_world * [ALONG, ALONG, 1.0]))
+        if len(own) > 1:
+            reach = float(np.linalg.norm(points[:, own] - at[:, None], axis=-1).max())
+            columns.append(moment @ (from_world * [reach, reach, ALONG * reach]))
+    return np.concatenate(columns, -1), inside
 
 
 def _combined(

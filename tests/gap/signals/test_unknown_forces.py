@@ -30,7 +30,7 @@ def ground(subject, unknown):
         on_pads[:, subject.pad_foot == foot] = np.nan
         if kind == ALL:
             force[:, foot] = np.nan
-    return Ground(force, on_pads, touching)
+    return Ground(subject, force, on_pads, touching)
 
 
 def drawn(subject, unknown, seed):
@@ -56,7 +56,7 @@ def drawn(subject, unknown, seed):
 def test_no_unknown_force_reaches_the_rows_that_are_judged(subject, unknown, seed):
     position, rotation, force = drawn(subject, unknown, seed)
     none = np.zeros(position.shape, bool)
-    rows = eliminated(subject, position, rotation, ground(subject, unknown), none, 2)
+    rows = eliminated(position, rotation, ground(subject, unknown), none, 2)
     assert rows.ticks.tolist() == list(range(TICKS))
     pushed, wrench = pads.contact_torque(subject, position, rotation, force)
     freed = rows.applied(-pushed, -wrench)
@@ -71,7 +71,7 @@ def test_no_unknown_force_reaches_the_rows_that_are_judged(subject, unknown, see
 def test_rows_of_joints_that_no_unknown_force_reaches_stay_as_they_are(subject):
     position, rotation, _ = drawn(subject, {0: ALL}, 5)
     none = np.zeros(position.shape, bool)
-    rows = eliminated(subject, position, rotation, ground(subject, {0: ALL}), none, 2)
+    rows = eliminated(position, rotation, ground(subject, {0: ALL}), none, 2)
     motion = np.random.default_rng(1).standard_normal(position.shape)
     other = [i for i, j in enumerate(subject.joints) if j.startswith("right")]
     base = np.ones((TICKS, 6))
@@ -85,7 +85,7 @@ def test_noise_of_independent_joints_is_independent_in_the_rows_that_are_judged(
     unknown = {0: ALL, 1: ALL}
     position, rotation, _ = drawn(subject, unknown, 4)
     none = np.zeros(position.shape, bool)
-    rows = eliminated(subject, position, rotation, ground(subject, unknown), none, 2)
+    rows = eliminated(position, rotation, ground(subject, unknown), none, 2)
     weights = rows.of_joints[0][~rows.lost[0]]
     np.testing.assert_allclose(weights @ weights.T, np.eye(len(weights)), atol=1e-9)
 
@@ -94,12 +94,12 @@ def test_a_row_that_needs_an_unmeasured_joint_is_lost(subject):
     unknown = {0: PLACE, 1: PLACE}
     position, rotation, _ = drawn(subject, unknown, 3)
     none = np.zeros(position.shape, bool)
-    rows = eliminated(subject, position, rotation, ground(subject, unknown), none, 2)
+    rows = eliminated(position, rotation, ground(subject, unknown), none, 2)
     used = np.abs(rows.of_joints[0] - np.diag(np.diag(rows.of_joints[0])))
     spent = int(np.argmax(used.sum(0)))
     missing = none.copy()
     missing[:, spent] = True
-    without = eliminated(subject, position, rotation, ground(subject, unknown), missing, 2)
+    without = eliminated(position, rotation, ground(subject, unknown), missing, 2)
     assert without.lost[:, used[:, spent] > 1e-2].all()
 
 
@@ -108,11 +108,11 @@ def test_what_the_ground_tells_of_changes_soon_is_left_out(subject):
     known = ground(subject, {0: ALL})
     known.touching[: TICKS // 2], known.pad_force[: TICKS // 2] = False, 0.0
     none = np.zeros(position.shape, bool)
-    rows = eliminated(subject, position, rotation, known, none, 4)
+    rows = eliminated(position, rotation, known, none, 4)
     assert rows.ticks.tolist() == list(range(TICKS // 2 + 4, TICKS))
 
 
 def test_known_forces_need_no_elimination(subject):
     position, rotation, _ = drawn(subject, {}, 0)
     none = np.zeros(position.shape, bool)
-    assert eliminated(subject, position, rotation, ground(subject, {}), none, 2) is None
+    assert eliminated(position, rotation, ground(subject, {}), none, 2) is None

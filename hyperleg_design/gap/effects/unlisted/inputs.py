@@ -10,9 +10,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hyperleg_design.gap.model.friction import stop
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import sliding
-from hyperleg_design.gap.signals.stop_operator import stop
 from hyperleg_design.memoized import memoized
 
 SHAPES = 8
