@@ -39,6 +39,7 @@ CHANGES = {
     ],
     "cubic": [],
     "cubic_faint": [],
+    "rounded": [],
     "limited": [
         (
             'name="m_front" tendon="front" ctrlrange="-4 4"',
@@ -51,6 +52,8 @@ CHANGES = {
 HARDENING = {"cubic": 4.0 / 12, "cubic_faint": 1 / 600}
 """Torque of the spring that hardens, at each motor over the cube of the hip's angle [Nm/rad^3]; the
 faint one is within what a check of the drives' torques lets pass."""
+ROUNDED = 0.2
+"""Friction at each motor that reverses over 0.3 rad/s of the hip [Nm]."""
 
 
 def run(kind: str, seed: int, **metadata):
@@ -76,6 +79,10 @@ def _run(kind: str, seed: int):
         pull = HARDENING[kind] * log.column("position/hip") ** 3
         for motor in ("m_front", "m_back"):
             signals[f"motor_torque/{motor}"] = signals[f"motor_torque/{motor}"] + pull
+    if kind == "rounded":
+        for motor in ("m_front", "m_back"):
+            rubs = ROUNDED * np.tanh(log.column("velocity/hip") / 0.3)
+            signals[f"motor_torque/{motor}"] = signals[f"motor_torque/{motor}"] + rubs
     if kind == "limited":
         asked = np.array([target(t) for t in log.time])
         signals |= {

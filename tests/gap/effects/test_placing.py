@@ -21,7 +21,7 @@ SENSOR = {"sees": ("joint_torque", "motor_torque_command")}
 @pytest.mark.parametrize(
     ("identifier", "wrong", "values", "least"),
     [
-        ("coulomb_friction", Wrong(coulomb=0.3), [0.3], 0.15),
+        ("coulomb_friction", Wrong(coulomb=0.3), [0.3, 0.0], 0.15),
         ("viscous_friction", Wrong(viscous=0.3), [0.3], 0.15),
         ("stribeck_friction", Wrong(breakaway=0.4, stribeck_speed=0.5), [0.4, 0.5], 0.35),
         ("load_dependent_friction", Wrong(share=0.2), [0.2], 0.35),

@@ -29,7 +29,7 @@ def exact(search):
 def test_a_cause_of_this_size_is_named_nine_times_in_ten(search, exact):
     evidence, scales = search.evidence, search.fits.null.scales
     for one in detectable(exact):
-        (cause,) = search.traces[one.effect, one.location, False]
+        cause, *_ = search.traces[one.effect, one.location, False]
         unit = cause.columns[0] / cause.usual[0] * evidence.weight
         mean = one.change * unit
         # the log likelihood over nothing's of the best size is z^2 / 2, z normal about its mean
@@ -47,7 +47,7 @@ def test_a_cause_of_this_size_is_nine_times_in_ten_larger_than_a_usual_error(sea
     for one in sizes:
         key = one.effect, one.location
         usual = usual_error(search.evidence, search.rules, (*key, 0))
-        (cause,) = search.traces[*key, False]
+        cause, *_ = search.traces[*key, False]
         information = search.proposer.information((*key, False), search.fits.null.scales)[0]
         spread = search.rules.posterior.interval * cause.usual[0] / np.sqrt(information)
         assert usual > 0

@@ -64,7 +64,8 @@ def test_a_motor_of_a_slide_has_a_limit_of_force():
 
 def test_a_scale_of_all_torques_widens_forces_too():
     narrow, wide = (
-        values_of("coulomb_friction", [3.0], [0.1], error, SLIDE)["torque"] for error in (0.0, 0.1)
+        values_of("coulomb_friction", [3.0, 0], [0.1, 0], error, SLIDE)["torque"]
+        for error in (0.0, 0.1)
     )
     assert wide.high - wide.value == pytest.approx(NORMAL * np.hypot(0.1, 0.3))
     assert narrow.high - narrow.value == pytest.approx(NORMAL * 0.1)
@@ -87,8 +88,8 @@ def test_a_rest_angle_that_an_end_of_the_interval_lacks_is_not_stated():
 
 
 def test_intervals_end_at_bounds_and_scale_with_the_deviation():
-    narrow = values_of("coulomb_friction", [0.3], [0.1])["torque"]
-    wide = values_of("coulomb_friction", [0.3], [0.2])["torque"]
+    narrow = values_of("coulomb_friction", [0.3, 0], [0.1, 0])["torque"]
+    wide = values_of("coulomb_friction", [0.3, 0], [0.2, 0])["torque"]
     assert wide.high - wide.value == pytest.approx(2 * (narrow.high - narrow.value))
     assert narrow.low >= EFFECTS["coulomb_friction"].parameters[0].low
 
@@ -107,7 +108,7 @@ def test_an_interval_holds_nineteen_in_twenty():
 
 
 def test_sizes_in_units_of_torque_are_no_better_known_than_the_torques():
-    friction = values_of("coulomb_friction", [0.3], [0.004], torque_error=0.1)["torque"]
+    friction = values_of("coulomb_friction", [0.3, 0], [0.004, 0], torque_error=0.1)["torque"]
     assert friction.high - 0.3 == pytest.approx(1.96 * np.hypot(0.004, 0.03), rel=1e-6)
     gains = values_of("controller_gain", [0.8, 1.0], [0.004, 0.0], torque_error=0.1)
     assert gains["stiffness_scale"].high - 0.8 == pytest.approx(1.96 * 0.004, rel=1e-6)

@@ -6,10 +6,12 @@ from types import SimpleNamespace
 import diagnosed
 import pytest
 
+from hyperleg_design.gap.effects.joints.coulomb_friction import REVERSALS
 from hyperleg_design.gap.inference.rules import InferenceRules
 from hyperleg_design.gap.pipeline.answer import Answer
 from hyperleg_design.gap.pipeline.diagnose import diagnose
 from hyperleg_design.gap.results.diagnosis import SCHEMA_FILE, read_diagnosis
+from hyperleg_design.gap.signals.loading import load_subject
 from hyperleg_design.writing import write_json
 
 
@@ -51,6 +53,20 @@ def test_a_torque_that_no_effect_has_is_unknown(robot_files, references):
     assert not result.causes
     assert result.remainder > 0.5
     assert result.residual_shape
+
+
+def test_friction_that_reverses_over_a_speed_is_friction(robot_files):
+    result = diagnosed.diagnosis(robot_files, "rounded")
+    assert result.verdict == "explained"
+    (cause,) = result.causes
+    assert (cause.effect, cause.location) == ("coulomb_friction", "hip")
+    shape = cause.parameters["reversal"].value
+    assert REVERSALS[int(shape)] == "over 0.3 rad/s"
+    subject = load_subject(robot_files["coupled"])
+    size = 2 * diagnosed.ROUNDED * subject.joint_from_motor[subject.joints.index("hip")].mean()
+    torque = cause.parameters["torque"]
+    assert torque.low < size < torque.high
+    assert cause.closed > 0.9
 
 
 @pytest.mark.slow

@@ -68,8 +68,8 @@ def test_a_place_that_is_not_tried_is_not_named(logs):
 
 def test_at_least_one_reference_stays_as_it_was_recorded(logs, monkeypatch):
     """However often references seem to differ: here by a friction of nothing at all."""
-    nothing = causes.unbounded("coulomb_friction", "hip", np.zeros((1, 1)))
-    endless = Difference(0, "endless", nothing, np.zeros(1), np.ones(1), 20.0)
+    nothing = causes.unbounded("coulomb_friction", "hip", np.zeros((2, 1)))
+    endless = Difference(0, "endless", nothing, np.zeros(2), np.ones(2), 20.0)
     monkeypatch.setattr(judge, "differences", lambda search, result: [endless])
     references = [logs["before"], logs["healthy"], logs["dry"]]
     diagnosis = judge_signals([logs["viscous"]], references, PLACES[:1], RULES)

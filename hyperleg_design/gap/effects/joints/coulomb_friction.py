@@ -13,6 +13,7 @@ from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.joints.friction import JointFriction, ModelledFriction
 from hyperleg_design.gap.effects.parameter import Parameter
 from hyperleg_design.gap.effects.usual import COULOMB_LEAST
+from hyperleg_design.gap.model.friction import turned
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.sliding import WIDTH, sliding
@@ -20,12 +21,19 @@ from hyperleg_design.simulation.alteration import Alteration
 
 SOURCE = "4-5.6 Nm on harmonic drives of 100 Nm (BAM, arXiv 2410.08650); 0.7 on an RMD-X8"
 
+SPEEDS = (0.0, 0.1, 0.3)
+"""Speeds v_s over which friction reverses, as tanh(v / v_s) [rad/s]; 0, at once. Models state 0.01
+to 0.3 rad/s; friction of MuJoCo takes some 20 ms to reverse, which looks like it."""
+REVERSALS = ("at once", *(f"over {speed:g} rad/s" for speed in SPEEDS[1:]))
+"""Choices of the parameter `reversal`."""
+
 
 class CoulombFriction(ModelledFriction):
     """A joint resists sliding with one torque at any speed, beyond (or, negative, short of) the
     friction of the model.
 
-    Trace: torque times the way in which the joint slides, `friction.sliding`.
+    Trace: torque times the way in which the joint slides, `friction.sliding`, where it reverses at
+    once; else times tanh of the speed over one of `SPEEDS`.
     """
 
     identifier: ClassVar[str] = "coulomb_friction"
@@ -34,6 +42,7 @@ class CoulombFriction(ModelledFriction):
         Parameter(
             "torque", "Nm", 0.0, -1e4, 1e4, 0.04, SOURCE, spread=COULOMB_LEAST, of_strength=True
         ),
+        Parameter("reversal", "", 0.0, 0.0, 2.0, 1.0, "a choice", shape=True, choices=REVERSALS),
     )
     linear: ClassVar[bool] = True
     described: ClassVar[bool] = True
@@ -43,16 +52,29 @@ class CoulombFriction(ModelledFriction):
     }
     look_alikes: ClassVar[Mapping[str, str]] = {"backlash": "preload"}
 
-    def _torque(self, signals: Signals, joint: int, torque: np.ndarray) -> np.ndarray:
-        return torque * sliding(signals)[:, joint]
+    def _torque(
+        self, signals: Signals, joint: int, torque: np.ndarray, reversal: np.ndarray
+    ) -> np.ndarray:
+        ways = {0.0: sliding(signals)[:, joint]}
+        swing = None if signals.limit_cycle is None else signals.limit_cycle.speed[:, joint]
+        for choice in set(np.ravel(np.round(reversal)).tolist()) - set(ways):
+            ways[choice] = turned(signals.velocity[:, joint], SPEEDS[int(choice)], swing)
+        return torque * np.stack([ways[choice] for choice in np.ravel(np.round(reversal)).tolist()])
+
+    @override
+    def variants(self, signals: Signals, location: str) -> np.ndarray:
+        """Each of the ways to reverse."""
+        return np.stack([np.zeros(len(SPEEDS)), np.arange(len(SPEEDS))], 1)
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
         """What is taken away never exceeds the model's, and has its width."""
         joint = subject.joints.index(location)
-        torque = np.maximum(np.asarray(values, float)[..., 0], -subject.coulomb[joint])
+        torque, reversal = np.moveaxis(np.asarray(values, float), -1, 0)
+        torque = np.maximum(torque, -subject.coulomb[joint])
+        width = np.array([WIDTH, *SPEEDS[1:]])[np.round(reversal).astype(int)]
         return JointFriction(
             location,
             coulomb=torque,
-            width=float(subject.friction_speed[joint]) if np.any(torque < 0) else WIDTH,
+            width=np.where(torque < 0, subject.friction_speed[joint], width),
         )

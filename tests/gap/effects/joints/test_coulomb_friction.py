@@ -1,7 +1,9 @@
 import numpy as np
+import pytest
 from pendulum import Wrong, misfit, steps
 
 from hyperleg_design.gap.effects import effect
+from hyperleg_design.gap.effects.joints.coulomb_friction import SPEEDS
 
 COULOMB = effect("coulomb_friction")
 
@@ -9,13 +11,13 @@ COULOMB = effect("coulomb_friction")
 def test_trace_is_what_a_pendulum_with_bristles_leaves(pendulum):
     for options in ({}, {"target": steps}, {"sees": ()}):
         signals = pendulum(Wrong(coulomb=0.5), **options)
-        assert misfit(signals, COULOMB.trace(signals, "swing", np.array([[0.5]]))) < 0.15
+        assert misfit(signals, COULOMB.trace(signals, "swing", np.array([[0.5, 0.0]]))) < 0.15
 
 
 def test_least_squares_find_the_torque_despite_holds(pendulum):
     signals = pendulum(Wrong(coulomb=0.5), target=steps)
     rows, found = (
-        COULOMB.trace(signals, "swing", np.ones((1, 1)))["motion"][0],
+        COULOMB.trace(signals, "swing", np.array([[1.0, 0.0]]))["motion"][0],
         signals.residual["motion"],
     )
     use = signals.valid
@@ -23,8 +25,21 @@ def test_least_squares_find_the_torque_despite_holds(pendulum):
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):
-    signals = simulated("coulomb_friction", [0.4])
-    assert misfit(signals, COULOMB.trace(signals, "swing", np.array([[0.4]]))) < 0.35
+    for reversal in (0.0, 1.0, 2.0):
+        values = [0.4, reversal]
+        signals = simulated("coulomb_friction", values)
+        assert misfit(signals, COULOMB.trace(signals, "swing", np.array([values]))) < 0.35
+
+
+@pytest.mark.parametrize("reversal", [1.0, 2.0])
+def test_a_way_to_reverse_is_tanh_of_the_speed(pendulum, reversal):
+    signals = pendulum(Wrong())
+    trace = COULOMB.trace(signals, "swing", np.array([[0.5, reversal], [0.5, 0.0]]))["motion"]
+    width = SPEEDS[int(reversal)]
+    assert np.allclose(
+        trace[0, :, 0], 0.5 * np.tanh(signals.velocity[:, 0] / width), equal_nan=True
+    )
+    assert not np.allclose(trace[0], trace[1], equal_nan=True)
 
 
 def test_no_joint_has_less_friction_than_none():
@@ -33,4 +48,4 @@ def test_no_joint_has_less_friction_than_none():
     subject = load_subject("hyperleg")
     low, _ = COULOMB.bounds("left_knee", subject)
     assert low[0] == -subject.coulomb[subject.joints.index("left_knee")]
-    assert COULOMB.alteration("left_knee", np.array([-50.0]), subject).coulomb == low[0]
+    assert COULOMB.alteration("left_knee", np.array([-50.0, 0.0]), subject).coulomb == low[0]

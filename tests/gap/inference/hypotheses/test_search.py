@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, product
 from types import SimpleNamespace
 
 import diagnosed
@@ -25,19 +25,20 @@ def result(search):
 
 def test_the_best_of_all_sets_of_causes_is_found(search, result):
     single = {
-        name: Candidate(name[0], name[1], (traced[0],)) for name, traced in search.traces.items()
+        name: [Candidate(name[0], name[1], (variant,)) for variant in traced]
+        for name, traced in search.traces.items()
     }
     assert len(single) == 4
 
-    def score(names):
-        causes, scales = [single[name] for name in names], search.fits.null.scales
+    def score(causes):
+        scales = search.fits.null.scales
         for _ in range(2):  # the search goes on from fitted scales, too
             fit = search.fits.fit(causes, scales)
             scales = fit.scales
         return fit.score
 
     scores = {
-        tuple(sorted(names)): score(names)
+        tuple(sorted(names)): max(map(score, product(*(single[name] for name in names))))
         for size in range(1, 4)
         for names in combinations(single, size)
     }
