@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.checks.declarations import declarations
+from hyperleg_design.gap.checks.declarations import declarations, undeclared_supply
 from hyperleg_design.gap.checks.excitation import excitation_of
 from hyperleg_design.gap.checks.gates import unusable
 from hyperleg_design.gap.checks.plausibility import implausible
@@ -133,6 +133,7 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
         *_columns(columns, sampling),
         *(implausible(log, subject) if measured else ()),
         *declarations(log.metadata, subject),
+        *undeclared_supply(log),
         *(zeroed(log, subject) if measured and subject is not None else ()),
     ]
     ordered = tuple(sorted(_merged(findings), key=lambda f: SEVERITIES.index(f.severity)))

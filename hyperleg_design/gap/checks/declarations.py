@@ -5,7 +5,11 @@ from __future__ import annotations
 import difflib
 from collections.abc import Collection
 
+import numpy as np
+
 from hyperleg_design.errors import meant
+from hyperleg_design.gap.effects.drives.voltage_sag import SAGGING
+from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import FIELDS, Metadata
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.results.finding import ERROR, WARNING, Finding
@@ -38,6 +42,33 @@ def declarations(metadata: Metadata, subject: Subject | None) -> list[Finding]:
     ):
         findings += [_stranger(field, name, known) for name in names if name not in known]
     return findings
+
+
+def undeclared_supply(log: Log) -> list[Finding]:
+    """Find a battery that sags under servos of which nobody knows whether they have a current loop.
+
+    Args:
+        log: the log.
+
+    Returns:
+        A warning where the voltage varies, no torque or current is measured, and no supply is
+        declared.
+    """
+    voltage = log.column("battery_voltage")
+    measured = any(
+        log.has(kind, m) for kind in ("motor_torque", "motor_current") for m in log.motors
+    )
+    if log.metadata.supply or measured or not np.isfinite(voltage).any():
+        return []
+    low, high = np.nanpercentile(voltage, [5, 95])
+    if high - low < SAGGING * high:
+        return []
+    text = f"falls from {high:.3g} to {low:.3g} V, and no supply is declared"
+    remedy = (
+        "declare supply {motor: [nominal V, stall Nm, no-load rad/s]} of servos without a current "
+        "loop; without it, torques that follow the battery look like wrong gains"
+    )
+    return [Finding(WARNING, "battery_voltage", text, remedy)]
 
 
 def _stranger(field: str, name: str, known: Collection[str]) -> Finding:

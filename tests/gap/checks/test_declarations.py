@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from hyperleg_design.gap.checks.declarations import declarations
+import numpy as np
+from rig import rig_log
+
+from hyperleg_design.gap.checks.declarations import declarations, undeclared_supply
 from hyperleg_design.gap.logs.metadata import Metadata, metadata_from_mapping
 from hyperleg_design.gap.results.finding import ERROR, WARNING
 from tests.gap.checks.implausible import Robot
@@ -34,3 +37,25 @@ def test_a_field_that_is_nearly_known_is_a_warning_and_one_of_somebody_elses_is_
     found = metadata_from_mapping({"gain": {"hip": [20, 1]}, "firmware": "1.2"}, "log.json")
     (one,) = declarations(found, None)
     assert (one.severity, one.remedy) == (WARNING, "did you mean gains?")
+
+
+def test_a_battery_that_sags_under_servos_asks_for_their_supply():
+    log = rig_log()
+    silent = {c: v for c, v in log.signals.items() if not c.startswith("motor_")}
+    flat, sagging = (
+        log.changed(
+            signals=silent | {"battery_voltage": np.linspace(7.4, low, len(log.time))},
+        )
+        for low in (7.3, 6.2)
+    )
+    assert undeclared_supply(flat) == []
+    (one,) = undeclared_supply(sagging)
+    assert (one.severity, one.signal) == (WARNING, "battery_voltage")
+    assert "no supply is declared" in one.what
+    told = sagging.metadata.changed(supply={"hip": (7.4, 1.8, 6.0)})
+    assert undeclared_supply(sagging.changed(metadata=told)) == []
+    measured = log.changed(signals=log.signals | dict(sagging.signals))
+    assert measured.has("motor_torque", measured.motors[0]) or measured.has(
+        "motor_current", measured.motors[0]
+    )
+    assert undeclared_supply(measured) == []

@@ -61,7 +61,7 @@ def test_friction_that_reverses_over_a_speed_is_friction(robot_files):
     (cause,) = result.causes
     assert (cause.effect, cause.location) == ("coulomb_friction", "hip")
     shape = cause.parameters["reversal"].value
-    assert REVERSALS[int(shape)] == "over 0.3 rad/s"
+    assert REVERSALS[int(shape)] == "reverses over 0.3 rad/s"
     subject = load_subject(robot_files["coupled"])
     size = 2 * diagnosed.ROUNDED * subject.joint_from_motor[subject.joints.index("hip")].mean()
     torque = cause.parameters["torque"]

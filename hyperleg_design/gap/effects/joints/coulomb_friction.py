@@ -24,7 +24,7 @@ SOURCE = "4-5.6 Nm on harmonic drives of 100 Nm (BAM, arXiv 2410.08650); 0.7 on 
 SPEEDS = (0.0, 0.1, 0.3)
 """Speeds v_s over which friction reverses, as tanh(v / v_s) [rad/s]; 0, at once. Models state 0.01
 to 0.3 rad/s; friction of MuJoCo takes some 20 ms to reverse, which looks like it."""
-REVERSALS = ("at once", *(f"over {speed:g} rad/s" for speed in SPEEDS[1:]))
+REVERSALS = ("reverses at once", *(f"reverses over {speed:g} rad/s" for speed in SPEEDS[1:]))
 """Choices of the parameter `reversal`."""
 
 
