@@ -119,7 +119,7 @@ def of_design(design: RobotDesign, path: Path, base: str, known: set[str] | None
 
 def _spec(design: RobotDesign, base: str) -> Any:
     """A robot on a stand needs neither pads nor a floor."""
-    if base == "fixed" and isinstance(design, TreeDesign):
+    if base == "fixed":
         return mujoco_spec(design, friction=False, floor=False)
     return simulation_spec(design)
 

@@ -17,6 +17,7 @@ from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.pads import pad_points
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import resampled
+from hyperleg_design.gap.signals.nominal_ground import floor_height
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -43,7 +44,8 @@ class Ground:
     """World frame `(t, P, 3)` [N]; NaN on the pads of a foot while it touches and the place of its
     force is unknown."""
     touching: np.ndarray | None = None
-    """Feet that touch, or may `(t, f)`; None of a fixed base without contact forces."""
+    """Feet that touch, or may `(t, f)`; None of a fixed base without a floor within reach, or
+    contact forces."""
 
     @cached_property
     def unknown(self) -> tuple[np.ndarray, np.ndarray]:
@@ -111,7 +113,9 @@ def contacts(
     if not feet:
         return Ground(subject)
     if not log.feet:
-        touching = _may_touch(subject, position, base) if base is not None else None
+        touching = (
+            _on_floor(subject, position) if base is None else _may_touch(subject, position, base)
+        )
         weight = subject.tree.mass * np.linalg.norm(subject.gravity)
         if touching is not None and needed is not None:
             touching &= (np.linalg.norm(needed, axis=1) > FLIGHT * weight)[:, None]
@@ -229,9 +233,25 @@ def _feet_without_force(
 
 def _may_touch(subject: Subject, position: np.ndarray, base: BaseMotion) -> np.ndarray:
     """Feet near the lowest one, by forward kinematics."""
-    points = pad_points(subject, position, base.rotation)
-    height = np.einsum("ti,tpi->tp", base.rotation[:, 2], points)
-    lowest = np.stack(
-        [height[:, subject.pad_foot == f].min(1) for f in range(len(subject.feet))], 1
-    )
+    lowest = _lowest(subject, position, base.rotation)
     return np.asarray(lowest < lowest.min(1, keepdims=True) + TOUCHING_HEIGHT)
+
+
+def _on_floor(subject: Subject, position: np.ndarray) -> np.ndarray | None:
+    """Feet of a robot on a stand or a rail that are near the floor of its model; None where none is
+    ever, or where one is far below: then the floor lies elsewhere.
+    """
+    floor = floor_height(subject.model)
+    if floor is None:
+        return None
+    height = _lowest(subject, position, np.broadcast_to(np.eye(3), (len(position), 3, 3))) - floor
+    near = np.abs(height) < TOUCHING_HEIGHT
+    return near if near.any() and height.min() > -2 * TOUCHING_HEIGHT else None
+
+
+def _lowest(subject: Subject, position: np.ndarray, rotation: np.ndarray) -> np.ndarray:
+    """Height of the lowest point of each foot over the base's origin `(t, f)` [m]."""
+    points = pad_points(subject, position, rotation)
+    height = np.einsum("ti,tpi->tp", rotation[:, 2], points)
+    feet = range(len(subject.feet))
+    return np.stack([height[:, subject.pad_foot == f].min(1) for f in feet], 1)

@@ -131,6 +131,22 @@ def floor_geoms(model: mujoco.MjModel) -> list[int]:
     ]
 
 
+def floor_height(model: mujoco.MjModel) -> float | None:
+    """Look up how high the highest plane of the world lies.
+
+    Args:
+        model: the compiled model.
+
+    Returns:
+        Its height [m]; None where the world has none that collides.
+    """
+    import mujoco
+
+    plane = mujoco.mjtGeom.mjGEOM_PLANE
+    heights = [model.geom_pos[g, 2] for g in floor_geoms(model) if model.geom_type[g] == plane]
+    return float(max(heights)) if heights else None
+
+
 def pair_settings(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarray, int]:
     """Look up the contact settings between a shape and the floor, as MuJoCo mixes them.
 
