@@ -65,8 +65,6 @@ class Effect(ABC):
     nothing. It acts under test alone, and pays for no parameter beside the marginal likelihood."""
     rare: ClassVar[float] = 0.0
     """Log prior odds over those of an effect that looks like it, of one that is rarer [nat]."""
-    driver: ClassVar[str] = ""
-    """Field of `Signals` that drives it, if any."""
     unseen: ClassVar[float] = 0.0
     """Log prior odds for it where no log has what shows it (`driven`): a model of that fits much
     [nat]."""
@@ -105,12 +103,12 @@ class Effect(ABC):
     """Effects that are taken for this one most, and what separates them; one of two may say so."""
 
     def driven(self, signals: Signals) -> bool:
-        """Tell whether a log has what shows the effect by itself: its driver, if it has one.
+        """Tell whether a log has what shows the effect by itself; by default it has.
 
         Args:
             signals: the conditioned log.
         """
-        return not self.driver or getattr(signals, self.driver) is not None
+        return True
 
     @abstractmethod
     def locations(self, subject: Subject) -> tuple[str, ...]:

@@ -113,7 +113,7 @@ def test_linear_says_whether_twice_the_size_is_twice_the_trace(name, pendulum):
     import dataclasses
 
     one = effect(name)
-    signals = pendulum(Wrong(), duration=4.0, sees=())
+    signals = pendulum(Wrong(), duration=4.0, sees=("temperature", "voltage"))
     # a limit that binds, so that what is linear without limits only does not pass for linear
     signals = dataclasses.replace(
         signals, subject=dataclasses.replace(signals.subject, torque_limit=np.array([1.0]))
@@ -166,7 +166,7 @@ def test_nulls_change_no_simulation(name, pendulum):
     from hyperleg_design.gap.playback.windows import short_windows
 
     one = effect(name)
-    signals = pendulum(Wrong(), duration=4.0, sees=())
+    signals = pendulum(Wrong(), duration=4.0, sees=("temperature", "voltage"))
     location = one.locations(signals.subject)[0]
     windows = short_windows(signals)
     plain, added = replay(

@@ -47,7 +47,8 @@ def test_a_motor_of_a_passive_joint_is_no_place(robot_files):
 @pytest.mark.parametrize("name", [e.identifier for e in of_kind((JointTorque, MotorTorque))])
 def test_a_torque_is_the_residual_of_motion_of_each_setting(name, pendulum):
     """K settings at once are the same as one after the other, and nothing else is touched."""
-    signals, effect = pendulum(Wrong(), duration=2.0), EFFECTS[name]
+    sees = ("motor_torque", "temperature")
+    signals, effect = pendulum(Wrong(), duration=2.0, sees=sees), EFFECTS[name]
     (place, *_) = effect.locations(signals.subject)
     values = np.stack([effect.nulls, effect.example(place, signals.subject)])
     both = effect.trace(signals, place, values)

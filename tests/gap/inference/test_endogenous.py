@@ -98,7 +98,10 @@ def test_a_limit_pays_for_the_torque_that_it_holds_back(robot_files):
 
 def test_a_weak_battery_and_strong_motors_cancel_out(robot_files):
     """What a battery takes from all torques must not be given back for free."""
-    samples = diagnosed.evidence(robot_files["coupled"], unmeasured()).samples
+    log = unmeasured()
+    battery = {"battery_voltage": np.linspace(24.0, 18.0, len(log.time))}
+    log = log.changed(signals=dict(log.signals) | battery)
+    samples = diagnosed.evidence(robot_files["coupled"], log).samples
     sag, subject = WEIGHED["voltage_sag"], samples.filtered_logs[0].signals.subject
     values = np.array([0.0, 2.0, 10.0])
     weak = factors_of(samples, "voltage_sag", "battery", sag.usual("battery", subject), values)

@@ -38,16 +38,14 @@ class ThermalDerating(MotorTorque):
     """A motor's torque falls short of what its current says by a share for each kelvin above 25
     degC.
 
-    Temperature as logged; else that of a first-order model heated by the squared torques of the log
-    itself, from cold. Trace: coefficient (T - 25 degC) times the believed torque.
+    Trace: coefficient (T - 25 degC) times the believed torque, of logged temperatures T. A motor
+    without one is not judged: a temperature modelled from torques grows with the time, as what a
+    battery loses does. A simulation without one heats it by a first-order model, from cold.
     """
 
     identifier: ClassVar[str] = "thermal_derating"
     scales: ClassVar[str] = "motor"
     rare: ClassVar[float] = -0.5
-    """Assumed."""
-    driver: ClassVar[str] = "temperature"
-    unseen: ClassVar[float] = -1.0
     """Assumed."""
     summary: ClassVar[str] = "a motor loses torque as it warms up"
     parameters: ClassVar[tuple[Parameter, ...]] = (
@@ -65,15 +63,20 @@ class ThermalDerating(MotorTorque):
         known = {m: log.column(f"motor_temperature/{m}") for m in logged}
         rise = {m: float(np.nanmax(values) - np.nanmin(values)) for m, values in known.items()}
         if not rise:
-            why = "no motor temperature: a diagnosis models it from the torques, and may be wrong"
+            why = "no motor temperature"
             return Excitation(self.identifier, False, (), why)
         warm = tuple(m for m, value in rise.items() if value >= WARMING)
         needed = "" if warm else f"; {WARMING:.0f} K are needed"
         why = f"temperature changes by {max(rise.values()):.0f} K{needed}"
         return Excitation(self.identifier, bool(warm) and bool(motion.torque.any()), warm, why)
 
+    @override
+    def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
+        rise = _rise(signals, signals.subject.motors.index(location))
+        return {} if rise is None else super().trace(signals, location, values)
+
     def _torque(self, signals: Signals, motor: int, coefficient: np.ndarray) -> np.ndarray:
-        return coefficient * (rise(signals, motor) * given(signals, motor))
+        return coefficient * (_rise(signals, motor) * given(signals, motor))
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:
@@ -85,29 +88,15 @@ class ThermalDerating(MotorTorque):
     @override
     def torque_slope(self, signals: Signals, motor: int, joint: int) -> np.ndarray:
         """Compute how the factor on the torque falls with the temperature."""
-        return -np.nan_to_num(rise(signals, motor))
+        rise = _rise(signals, motor)
+        return np.zeros(1) if rise is None else -np.nan_to_num(rise)
 
 
-def rise(signals: Signals, motor: int) -> np.ndarray:
-    """Temperature of a motor above 25 degC `(t,)` [K], logged or modelled.
-
-    Args:
-        signals: a conditioned log, `t` ticks.
-        motor: index of the motor.
-
-    Returns:
-        The rise `(t,)` [K].
-    """
-    if signals.temperature is not None and np.isfinite(signals.temperature[:, motor]).any():
-        return signals.temperature[:, motor] - COLD
-    from scipy.signal import lfilter
-
-    heat = (
-        RATED_RISE
-        * (np.nan_to_num(signals.believed[:, motor]) / rated_torque(signals.subject, motor)) ** 2
-    )
-    keep = np.exp(-signals.step / TIME_CONSTANT)
-    return np.asarray(lfilter([0.0, 1 - keep], [1.0, -keep], heat))
+def _rise(signals: Signals, motor: int) -> np.ndarray | None:
+    """Temperature of a motor above 25 degC `(t,)` [K]; None where it is not logged."""
+    if signals.temperature is None or not np.isfinite(signals.temperature[:, motor]).any():
+        return None
+    return np.asarray(signals.temperature[:, motor] - COLD)
 
 
 def rated_torque(subject: Subject, motor: int) -> float:

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from typing_extensions import override
 
-from hyperleg_design.gap.effects.drives.weak_battery import WeakBattery, modelled
+from hyperleg_design.gap.effects.drives.weak_battery import WeakBattery
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.excitation import Excitation, Motion
 from hyperleg_design.gap.effects.families import BEYOND_COMMANDS, LATE, SCALING, WITHOUT_DRIVE
@@ -49,23 +49,21 @@ class VoltageSag(Effect):
     """Torque falls with the battery's voltage: its limits, and of drives without current control
     the torque itself.
 
-    What is missing of the voltage, 1 - V / V_nominal, is logged; else 20 % of it at the reference
-    power, half of that at rest. A nominal voltage that nobody gives is the largest that reference
-    logs show, or the log itself. `limits` scales how much of it a motor's DC-motor line loses. Of
-    motors whose line nobody knows, it says how near that line is: stall torque at the nominal
-    voltage is the torque that the motor is made for over `limits`, no-load speed is `speed` at the
-    joint that it moves most, and both fall with the voltage. `torque` is how much of what is
-    missing any torque loses. Trace, by the rule of `placing`.
+    What is missing of the voltage V is 1 - V / V_nominal. Without a logged voltage it is not judged
+    (a simulation without one loses 20 % at the reference power, half of that at rest). A nominal
+    voltage that nobody gives is the largest that reference logs show, or the log itself. `limits`
+    scales how much of it a motor's DC-motor line loses. Of motors whose line nobody knows, it says
+    how near that line is: stall torque at the nominal voltage is the torque that the motor is made
+    for over `limits`, no-load speed is `speed` at the joint that it moves most, and both fall with
+    the voltage. `torque` is how much of what is missing any torque loses. Trace, by the rule of
+    `placing`.
     """
 
     identifier: ClassVar[str] = "voltage_sag"
     kind: ClassVar[str] = "robot"
     rare: ClassVar[float] = -1.0
     """Assumed."""
-    driver: ClassVar[str] = "voltage"
     holds_back: ClassVar[bool] = True
-    unseen: ClassVar[float] = -6.0
-    """Assumed."""
     summary: ClassVar[str] = "the battery's voltage drops, and with it torque limits or torques"
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("limits", "", 0.0, 0.0, 20.0, 1.0, LIMITS_SOURCE),
@@ -109,13 +107,13 @@ class VoltageSag(Effect):
     def trace(self, signals: Signals, location: str, values: np.ndarray) -> dict[str, np.ndarray]:
         subject = signals.subject
         limits, torque, speed = np.atleast_2d(np.asarray(values, float)).T[..., None]
+        if signals.voltage is None:
+            return {}
         lost = missing(signals)
         changes = {}
         for motor in range(len(subject.motors)):
-            if not is_commanded(signals, motor) or (
-                signals.voltage is not None and np.isfinite(subject.supply[motor])
-            ):
-                continue  # of motors that follow a logged voltage it is no news
+            if not is_commanded(signals, motor) or np.isfinite(subject.supply[motor]):
+                continue  # of motors that follow the logged voltage it is no news
             asked, wanted = (
                 commanded(signals, motor),
                 commanded(signals, motor) * (1 - torque * lost),
@@ -152,8 +150,10 @@ def _lines(signals: Signals) -> list[list[float]]:
     squares: `limits`, `torque` and `speed` of each.
     """
     subject, lines = signals.subject, []
+    if signals.voltage is None or signals.measured is None:
+        return []
     for motor in range(len(subject.motors)):
-        if not is_commanded(signals, motor) or signals.measured is None:
+        if not is_commanded(signals, motor):
             continue
         torque = signals.measured[:, motor]
         if not np.isfinite(torque).any():
@@ -176,22 +176,19 @@ def _lines(signals: Signals) -> list[list[float]]:
 
 
 def missing(signals: Signals) -> np.ndarray:
-    """1 - V / V_nominal `(t,)`, logged or modelled.
+    """Compute 1 - V / V_nominal.
 
     Args:
-        signals: a conditioned log, `t` ticks.
+        signals: a conditioned log with a voltage, `t` ticks.
 
     Returns:
         The missing share `(t,)` [-].
     """
-    subject = signals.subject
-    if signals.voltage is not None:
-        nominal = machine(subject).voltage
-        if not np.isfinite(nominal):
-            nominal = float(np.nanpercentile(signals.voltage, FULL))
-        return np.asarray(1 - signals.voltage / nominal)
-    torque, speed = np.nan_to_num(signals.believed), signals.motor_speed
-    return modelled(torque, speed, machine(subject), reference_power(subject))
+    assert signals.voltage is not None
+    nominal = machine(signals.subject).voltage
+    if not np.isfinite(nominal):
+        nominal = float(np.nanpercentile(signals.voltage, FULL))
+    return np.asarray(1 - signals.voltage / nominal)
 
 
 def reference_power(subject: Subject) -> float:

@@ -5,6 +5,7 @@ import pytest
 from pendulum import Wrong, misfit, voltage
 
 from hyperleg_design.gap.effects import effect
+from hyperleg_design.gap.inference.effect_traces import lacking
 
 SAG = effect("voltage_sag")
 
@@ -56,3 +57,9 @@ def test_a_line_that_a_motor_falls_short_of_is_read_off_its_torque(pendulum, sim
     assert np.array_equal(
         usual, SAG.starts(pendulum(Wrong(), sees=("motor_torque", "voltage")), "battery")
     ), "a healthy motor gives what it is told"
+
+
+def test_a_battery_whose_voltage_nobody_logged_is_not_judged(pendulum):
+    signals = pendulum(Wrong(follow=1.0))
+    assert SAG.trace(signals, "battery", np.array([[0.0, 1.0, 10.0]])) == {}
+    assert "lack the signals" in lacking(SAG, "battery", [signals])

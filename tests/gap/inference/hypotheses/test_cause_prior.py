@@ -144,14 +144,16 @@ def test_each_free_parameter_costs_the_same():
     assert one - both == pytest.approx(RULES.cause.parameter)
 
 
-def test_rare_effects_are_less_probable_and_those_whose_driver_nobody_logged_still_less():
+def test_rare_effects_are_less_probable_and_those_that_no_log_shows_by_itself_still_less():
     values = np.array([1.0, 0.0, 10.0])
-    seen, unseen = (
-        prior_odds(cause("voltage_sag", unseen=u), values, RULES) for u in (False, True)
-    )
-    assert unseen - seen == EFFECTS["voltage_sag"].unseen < 0
     free = 3 * RULES.cause.parameter
-    assert seen == pytest.approx(EFFECTS["voltage_sag"].rare - free)
+    odds = prior_odds(cause("voltage_sag"), values, RULES)
+    assert odds == pytest.approx(EFFECTS["voltage_sag"].rare - free)
+    seen, unseen = (
+        prior_odds(cause("transmission_ratio", unseen=u), np.array([1.1, 0.0]), RULES)
+        for u in (False, True)
+    )
+    assert unseen - seen == EFFECTS["transmission_ratio"].unseen < 0
 
 
 def test_friction_that_is_described_is_not_gone():
