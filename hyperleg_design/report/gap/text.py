@@ -27,6 +27,8 @@ NOISE_FROM = {
 """What the size of the noise rests on."""
 LEAST_PROBABILITY = 0.005
 """Probability below which a rival is not printed; `diagnosis.json` has all."""
+ALONE = " (without reference logs: what the model lacks, whether it has changed or not)"
+"""End of the verdict where no log tells what the robot was like before."""
 LACKS = "model lacks"
 """Beginning of a line on what acts in the references, too; it holds fitted numbers alone."""
 
@@ -142,6 +144,8 @@ def diagnosis_text(diagnosis: Mapping[str, Any]) -> str:
     if diagnosis["causes"]:
         if remainder:
             lines[0] += " in part"
+        if diagnosis.get("provenance", {}).get("reference") == []:
+            lines[0] += ALONE
         low, high = (100 * float(v) for v in gap["closed_interval"])
         lines[1] = (
             f"{size} before, {gap['after']:.4g} with the causes added, noise {gap['floor']:.4g}; "

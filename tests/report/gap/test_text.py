@@ -1,3 +1,5 @@
+import pytest
+
 from hyperleg_design.gap.playback.added import Replayed
 from hyperleg_design.report.gap.text import diagnosis_text, replayed_text, sensitivity_rows
 
@@ -54,6 +56,14 @@ def test_an_answer_states_units_likely_rivals_and_the_experiment_as_a_sentence()
         "  to tell them apart: chirp (2 min): sweep the joint; it separates torque_constant at "
         "knee from transmission_ratio at knee"
     )
+
+
+@pytest.mark.parametrize(("references", "said"), [([], True), (["healthy"], False)])
+def test_a_verdict_without_references_says_what_it_is_about(references, said):
+    text = diagnosis_text(diagnosis(provenance={"reference": references}))
+    assert ("whether it has changed or not" in text.splitlines()[0]) == said
+    nothing = diagnosis(verdict="none", causes=[], provenance={"reference": references})
+    assert diagnosis_text(nothing).splitlines()[0] == "verdict: none"
 
 
 def test_one_effect_at_many_places_is_one_line_with_its_size_at_each():

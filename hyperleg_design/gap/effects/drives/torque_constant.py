@@ -139,15 +139,10 @@ class TorqueConstant(MotorEffect):
 
     @override
     def excited(self, log: Log, motion: Motion) -> Excitation:
-        motors = tuple(
-            m
-            for m in log.motors
-            if log.has("motor_current", m)
-            or log.has("motor_torque", m)
-            or (m in log.metadata.torque_sensors and log.has("motor_torque_command", m))
-        )
+        kinds = "motor_current", "motor_torque", "motor_torque_command"
+        motors = tuple(m for m in log.motors if any(log.has(kind, m) for kind in kinds))
         if not motors:
-            why = "no current and no motor torque: not told from controller_gain or payload"
+            why = "no current and no torque: not told from controller_gain or payload"
             return Excitation(self.identifier, False, (), why)
         moved = bool(motion.swinging.any())
         why = "current or torque under a changing load" if moved else "the load hardly changes"
