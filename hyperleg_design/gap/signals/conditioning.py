@@ -14,11 +14,10 @@ import numpy as np
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import KEPT_FROM
-from hyperleg_design.gap.model import friction, pads, rigid
-from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.model.supply import driven_by_duty, over_nominal
-from hyperleg_design.gap.signals import contact, transmission
+from hyperleg_design.gap.signals import transmission
+from hyperleg_design.gap.signals.balance import balance
 from hyperleg_design.gap.signals.base_motion import base_motion
 from hyperleg_design.gap.signals.channels import (
     GAP,
@@ -31,13 +30,10 @@ from hyperleg_design.gap.signals.control import control_residual
 from hyperleg_design.gap.signals.ground import ground_residual
 from hyperleg_design.gap.signals.inertial import inertial_residuals
 from hyperleg_design.gap.signals.joint_motion import joint_motion
-from hyperleg_design.gap.signals.limit_cycle import LimitCycle, limit_cycle
+from hyperleg_design.gap.signals.limit_cycle import limit_cycle
 from hyperleg_design.gap.signals.sensed import sensed_velocity
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.gap.signals.smoothing import Smooth
-from hyperleg_design.gap.signals.stops import at_stop
-from hyperleg_design.gap.signals.torque_sensors import behind_gears, taken_before
-from hyperleg_design.gap.signals.unknown_forces import eliminated
 from hyperleg_design.simulation.drives import limits
 
 EDGE = 4.0
@@ -90,27 +86,16 @@ def condition(log: Log, subject: Subject) -> Signals:
     shaken = limit_cycle(
         resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step
     )
-    ground, needed, of_base = _needed(log, subject, ticks, motion, base, shaken)
-    behind, before = None if measured is None else behind_gears(log, subject), None
-    if behind is not None:
-        taken = taken_before(subject, behind, motion, shaken)
-        needed, before = needed - taken, applied(subject.motor_from_joint, taken)
-    of_motion = applied(subject.joint_from_motor, believed) - needed
-    unmeasured = lacking | at_stop(subject, motion.value) | ~np.isfinite(of_motion)
-    if of_base is not None:
-        unmeasured |= ~np.isfinite(of_base).all(1, keepdims=True)
     margin = int(np.ceil(_edge(motion, lacking) / step))
-    rotation = None if base is None else base.rotation
-    elimination = eliminated(motion.value, rotation, ground, unmeasured, margin)
-    if of_base is not None and (ground.pad_force is not None or elimination is not None):
-        residual["base"] = np.where(contact.known_of_base(ground), of_base, np.nan)
-    unknown = contact.unknown_rows(ground, margin) | unmeasured
-    if elimination is not None:
-        of_motion = elimination.applied(of_motion, of_base)
-        needed = needed - elimination.pushed(of_base, len(ticks))
-        unknown[elimination.ticks] = elimination.lost
-        notes.append(elimination.note(subject.joints))
-    residual["motion"] = np.where(unknown, np.nan, of_motion)
+    torques = balance(
+        log, subject, ticks, motion, base, shaken, believed, measured is not None, lacking, margin
+    )
+    if torques.base is not None:
+        residual["base"] = torques.base
+    if torques.elimination is not None:
+        notes.append(torques.elimination.note(subject.joints))
+    residual["motion"] = torques.motion
+    behind, before = torques.behind, torques.before
     if measured is not None and limited is not None:
         given = measured if before is None else measured + before
         residual["drive"], repeated = _drive_residual(subject, given, limited)
@@ -143,18 +128,18 @@ def condition(log: Log, subject: Subject) -> Signals:
         command=command,
         measured=measured,
         believed=believed,
-        rigid=needed,
+        rigid=torques.needed,
         temperature=resampled_or_none(
             log.time, of_motors(log, "motor_temperature", subject), ticks
         ),
         voltage=voltage,
-        contact=ground.foot_force,
+        contact=torques.ground.foot_force,
         valid=valid,
         residual=residual,
-        pad_force=ground.pad_force,
-        pushing=ground.pushing,
-        elimination=elimination,
-        touching=ground.touching,
+        pad_force=torques.ground.pad_force,
+        pushing=torques.ground.pushing,
+        elimination=torques.elimination,
+        touching=torques.ground.touching,
         bandwidth=motion.crossover / (2 * np.pi),
         noise=motion.level,
         jump=jump,
@@ -167,33 +152,6 @@ def condition(log: Log, subject: Subject) -> Signals:
     if of_ground is not None:
         residual["ground"] = of_ground
     return signals
-
-
-def _needed(
-    log: Log,
-    subject: Subject,
-    ticks: np.ndarray,
-    motion: Smooth,
-    base: BaseMotion | None,
-    shaken: LimitCycle | None,
-) -> tuple[contact.Ground, np.ndarray, np.ndarray | None]:
-    """What the ground does, the torque that the joints need by the nominal model, less what known
-    forces of the ground give `(t, n)` [Nm], and the wrench that a floating base needs beyond these,
-    with the other sign `(t, 6)`.
-    """
-    moved = motion.value, motion.first, motion.second
-    own = None if base is None else rigid.base_wrench(subject, *moved, base)
-    ground = contact.contacts(
-        log, subject, ticks, motion.value, base, None if own is None else own[:, :3]
-    )
-    needed = rigid.inverse_dynamics(subject, *moved, base) + friction.friction_torque(
-        subject, motion.value, motion.first, None if shaken is None else shaken.speed
-    )
-    if ground.pushing is None:
-        return ground, needed, None if own is None else -own
-    rotation = None if base is None else base.rotation
-    pushed, wrench = pads.contact_torque(subject, motion.value, rotation, ground.pushing)
-    return ground, needed - pushed, None if own is None else wrench - own
 
 
 def _motor_speeds(

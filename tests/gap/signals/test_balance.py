@@ -1,4 +1,6 @@
-"""A leg on a rail that hops on a floor whose forces nobody measures, in a plain MuJoCo loop."""
+"""Balance of a leg on a rail that hops on a floor whose forces nobody measures, in a plain MuJoCo
+loop.
+"""
 
 from __future__ import annotations
 
