@@ -12,6 +12,7 @@ from hyperleg_design.gap.effects.excitation import REVERSING, Need
 from hyperleg_design.gap.effects.families import FRICTION
 from hyperleg_design.gap.effects.joints.friction import JointFriction, ModelledFriction
 from hyperleg_design.gap.effects.parameter import Parameter
+from hyperleg_design.gap.effects.placing import is_logged, is_measured
 from hyperleg_design.gap.effects.usual import COULOMB_LEAST
 from hyperleg_design.gap.model.friction import turned
 from hyperleg_design.gap.model.subject import Subject
@@ -63,8 +64,15 @@ class CoulombFriction(ModelledFriction):
 
     @override
     def variants(self, signals: Signals, location: str) -> np.ndarray:
-        """Each of the ways to reverse."""
-        return np.stack([np.zeros(len(SPEEDS)), np.arange(len(SPEEDS))], 1)
+        """Each of the ways to reverse; at once alone where no torque is logged, as the error that a
+        firmware lets pass looks like a way to reverse.
+        """
+        motors = np.flatnonzero(
+            signals.subject.joint_from_motor[signals.subject.joints.index(location)]
+        )
+        told = any(is_measured(signals, m) or is_logged(signals, m) for m in motors.tolist())
+        ways = np.arange(len(SPEEDS) if told else 1)
+        return np.stack([np.zeros(len(ways)), ways], 1)
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:

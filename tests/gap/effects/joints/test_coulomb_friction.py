@@ -49,3 +49,9 @@ def test_no_joint_has_less_friction_than_none():
     low, _ = COULOMB.bounds("left_knee", subject)
     assert low[0] == -subject.coulomb[subject.joints.index("left_knee")]
     assert COULOMB.alteration("left_knee", np.array([-50.0, 0.0]), subject).coulomb == low[0]
+
+
+def test_where_no_torque_is_logged_friction_reverses_at_once(pendulum):
+    for sees, ways in ((("motor_torque",), 3), (("motor_torque_command",), 3), ((), 1)):
+        variants = COULOMB.variants(pendulum(Wrong(), sees=sees), "swing")
+        assert variants.tolist() == [[0.0, float(way)] for way in range(ways)]
