@@ -70,8 +70,8 @@ class CoulombFriction(ModelledFriction):
         motors = np.flatnonzero(
             signals.subject.joint_from_motor[signals.subject.joints.index(location)]
         )
-        told = any(is_measured(signals, m) or is_logged(signals, m) for m in motors.tolist())
-        ways = np.arange(len(SPEEDS) if told else 1)
+        known = any(is_measured(signals, m) or is_logged(signals, m) for m in motors.tolist())
+        ways = np.arange(len(SPEEDS) if known else 1)
         return np.stack([np.zeros(len(ways)), ways], 1)
 
     @override
