@@ -22,11 +22,15 @@ from hyperleg_design.simulation.alteration import Alteration
 
 SOURCE = "4-5.6 Nm on harmonic drives of 100 Nm (BAM, arXiv 2410.08650); 0.7 on an RMD-X8"
 
-SPEEDS = (0.0, 0.1, 0.3)
+SPEEDS = (0.0, 0.03, 0.1, 0.3)
 """Speeds v_s over which friction reverses, as tanh(v / v_s) [rad/s]; 0, at once. Models state 0.01
 to 0.3 rad/s; friction of MuJoCo takes some 20 ms to reverse, which looks like it."""
 REVERSALS = ("reverses at once", *(f"reverses over {speed:g} rad/s" for speed in SPEEDS[1:]))
 """Choices of the parameter `reversal`."""
+
+GRADUAL = -6.0
+"""Log prior odds for friction that reverses over a speed, over one that does at once (assumed: both
+often fit alike) [nat]."""
 
 
 class CoulombFriction(ModelledFriction):
@@ -43,7 +47,7 @@ class CoulombFriction(ModelledFriction):
         Parameter(
             "torque", "Nm", 0.0, -1e4, 1e4, 0.04, SOURCE, spread=COULOMB_LEAST, of_strength=True
         ),
-        Parameter("reversal", "", 0.0, 0.0, 2.0, 1.0, "a choice", shape=True, choices=REVERSALS),
+        Parameter("reversal", "", 0.0, 0.0, 3.0, 1.0, "a choice", shape=True, choices=REVERSALS),
     )
     linear: ClassVar[bool] = True
     described: ClassVar[bool] = True
@@ -73,6 +77,11 @@ class CoulombFriction(ModelledFriction):
         known = any(is_measured(signals, m) or is_logged(signals, m) for m in motors.tolist())
         ways = np.arange(len(SPEEDS) if known else 1)
         return np.stack([np.zeros(len(ways)), ways], 1)
+
+    @override
+    def odds(self, location: str, subject: Subject, values: np.ndarray) -> float:
+        """Less for one that reverses over a speed."""
+        return GRADUAL if np.round(values[1:]).any() else 0.0
 
     @override
     def alteration(self, location: str, values: np.ndarray, subject: Subject) -> Alteration:

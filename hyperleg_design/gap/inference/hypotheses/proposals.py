@@ -265,13 +265,21 @@ class Proposer:
         if isinstance(traced, Starts):
             return self._of_values(name, base, products, traced)
         proposed, at = [], rows
-        each = zip(options, columns, self.scaling(name), strict=True)
-        for variant, (cause, own_columns, scaled) in enumerate(each):
+        each = zip(options, columns, self.scaling(name), self._odds(name, options), strict=True)
+        for variant, (cause, own_columns, scaled, less) in enumerate(each):
             place = np.arange(at, at + len(own_columns))
             gain = self._solved(base, products, place, cause, scaled).gain - base.gain
-            proposed.append(Proposal(*name, variant, gain))
+            proposed.append(Proposal(*name, variant, gain + float(less)))
             at += len(own_columns)
         return proposed
+
+    def _odds(self, name: Name, options: Sequence[Cause | None]) -> np.ndarray:
+        """Log prior odds of the variants of a linear effect, over the likeliest `(v,)` [nat]."""
+        if len(options) < 2:
+            return np.zeros(len(options))
+        effect, subject = WEIGHED[name[0]], self.evidence.signals[0].subject
+        odds = [effect.odds(name[1], subject, o.nulls) if o else 0.0 for o in options]
+        return np.array(odds) - max(odds)
 
     def _of_values(
         self, name: Name, base: _Beside, products: np.ndarray, starts: Starts

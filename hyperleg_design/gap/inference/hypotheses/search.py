@@ -315,7 +315,8 @@ class Search:
         """Fit an effect at a place beside a hypothesis from several starts.
 
         Args:
-            proposals: the starts, or the best variant of a linear effect.
+            proposals: the starts; of a linear effect the variants, of which the best two are
+                fitted, and one of a flexible function.
             current: the hypothesis.
 
         Returns:
@@ -324,9 +325,10 @@ class Search:
         known = self._known((*current.candidates, proposals[0]))
         if known is not None:
             return known
-        linear = WEIGHED[proposals[0].effect].linear
+        effect = WEIGHED[proposals[0].effect]
+        tried = 1 if effect.flexible else 2 if effect.linear else None
         optima: list[Candidate] = []
-        for proposal in proposals[: 1 if linear else None]:
+        for proposal in proposals[:tried]:
             candidate = self.fits.candidate(proposal, current)
             if candidate and not any(self._alike(candidate, other) for other in optima):
                 optima.append(candidate)

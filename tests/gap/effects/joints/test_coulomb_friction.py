@@ -25,13 +25,13 @@ def test_least_squares_find_the_torque_despite_holds(pendulum):
 
 
 def test_simulation_with_it_leaves_its_trace(simulated):
-    for reversal in (0.0, 1.0, 2.0):
+    for reversal in range(len(SPEEDS)):
         values = [0.4, reversal]
         signals = simulated("coulomb_friction", values)
         assert misfit(signals, COULOMB.trace(signals, "swing", np.array([values]))) < 0.35
 
 
-@pytest.mark.parametrize("reversal", [1.0, 2.0])
+@pytest.mark.parametrize("reversal", range(1, len(SPEEDS)))
 def test_a_way_to_reverse_is_tanh_of_the_speed(pendulum, reversal):
     signals = pendulum(Wrong())
     trace = COULOMB.trace(signals, "swing", np.array([[0.5, reversal], [0.5, 0.0]]))["motion"]
@@ -52,6 +52,16 @@ def test_no_joint_has_less_friction_than_none():
 
 
 def test_where_no_torque_is_logged_friction_reverses_at_once(pendulum):
-    for sees, ways in ((("motor_torque",), 3), (("motor_torque_command",), 3), ((), 1)):
+    for sees, ways in (
+        (("motor_torque",), len(SPEEDS)),
+        (("motor_torque_command",), len(SPEEDS)),
+        ((), 1),
+    ):
         variants = COULOMB.variants(pendulum(Wrong(), sees=sees), "swing")
         assert variants.tolist() == [[0.0, float(way)] for way in range(ways)]
+
+
+def test_friction_that_reverses_over_a_speed_is_less_likely(pendulum):
+    subject = pendulum(Wrong()).subject
+    at_once, gradual = (COULOMB.odds("swing", subject, np.array([0.5, r])) for r in (0.0, 2.0))
+    assert gradual < at_once == 0
