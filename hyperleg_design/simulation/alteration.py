@@ -331,14 +331,14 @@ def damps_motors(alterations: Sequence[Alteration]) -> bool:
     )
 
 
-def resistance(torque: np.ndarray, velocity: np.ndarray, width: float) -> np.ndarray:
+def resistance(torque: np.ndarray, velocity: np.ndarray, width: np.ndarray | float) -> np.ndarray:
     """Compute the D of friction that grows from zero over a width of velocity, torque tanh(|v| / w)
     / |v|.
 
     Args:
         torque: size of the friction [Nm].
         velocity: v [rad/s], `(...)`.
-        width: w [rad/s].
+        width: w [rad/s], as many or one.
 
     Returns:
         D [Nms/rad], `(...)`.

@@ -8,7 +8,7 @@ from collections.abc import Collection
 import numpy as np
 
 from hyperleg_design.errors import meant
-from hyperleg_design.gap.effects.drives.voltage_sag import SAGGING
+from hyperleg_design.gap.effects.drives.voltage_sag import SAGGING, voltage_spread
 from hyperleg_design.gap.logs.log import Log
 from hyperleg_design.gap.logs.metadata import FIELDS, Metadata
 from hyperleg_design.gap.model.subject import Subject
@@ -60,10 +60,10 @@ def undeclared_supply(log: Log) -> list[Finding]:
     )
     if log.metadata.supply or measured or not np.isfinite(voltage).any():
         return []
-    low, high = np.nanpercentile(voltage, [5, 95])
-    if high - low < SAGGING * high:
+    spread = voltage_spread(voltage)
+    if spread < SAGGING:
         return []
-    text = f"falls from {high:.3g} to {low:.3g} V, and no supply is declared"
+    text = f"varies by {100 * spread:.0f} %, and no supply is declared"
     remedy = (
         "declare supply {motor: [nominal V, stall Nm, no-load rad/s]} of servos without a current "
         "loop; without it, torques that follow the battery look like wrong gains"

@@ -44,7 +44,6 @@ from hyperleg_design.gap.inference.nuisance import (
     NuisanceParameter,
 )
 from hyperleg_design.gap.model import friction, pads
-from hyperleg_design.gap.model.friction import stop
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals.channels import applied
 from hyperleg_design.gap.signals.conditioning import are_kept
@@ -304,7 +303,9 @@ def _turnover(signals: Signals, joint: str, way: int) -> dict[str, np.ndarray]:
     at_once = sliding(signals)[:, j]
     swing = None if signals.limit_cycle is None else signals.limit_cycle.speed[:, j]
     turned = friction.turned(signals.velocity[:, j], subject.friction_speed[j], swing)
-    shape = stop(signals.position[:, j], WAYS[way - 1]) - at_once if way else at_once - turned
+    shape = (
+        friction.stop(signals.position[:, j], WAYS[way - 1]) - at_once if way else at_once - turned
+    )
     rows[:, j] = np.maximum(dry_friction(signals), least_friction(subject))[j] * shape
     return friction_trace(signals, rows)
 

@@ -136,7 +136,7 @@ class SearchRules:
     flexible: int = 2
     """Flexible effects at places that are fitted beside them [-]."""
     starts: int = 2
-    """Starts that a nonlinear effect is fitted from [-]."""
+    """Starts that a nonlinear effect, and variants that a linear one is fitted from [-]."""
     steps: int = 5
     """Gauss-Newton steps of a start [-]."""
     least: float = 0.0

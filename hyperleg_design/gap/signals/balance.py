@@ -14,6 +14,7 @@ from hyperleg_design.gap.model.base import BaseMotion
 from hyperleg_design.gap.model.subject import Subject
 from hyperleg_design.gap.signals import contact
 from hyperleg_design.gap.signals.channels import applied
+from hyperleg_design.gap.signals.joint_motion import JointMotion
 from hyperleg_design.gap.signals.limit_cycle import LimitCycle
 from hyperleg_design.gap.signals.smoothing import Smooth
 from hyperleg_design.gap.signals.stops import at_stop
@@ -45,12 +46,11 @@ def balance(
     log: Log,
     subject: Subject,
     ticks: np.ndarray,
-    motion: Smooth,
+    joints: JointMotion,
     base: BaseMotion | None,
     shaken: LimitCycle | None,
     believed: np.ndarray,
     sensed: bool,
-    lacking: np.ndarray,
     margin: int,
 ) -> Balance:
     """Balance the torques of a log.
@@ -59,24 +59,24 @@ def balance(
         log: of this subject.
         subject: the robot, with what the log declares of it.
         ticks: `(t,)` [s].
-        motion: of the joints.
+        joints: their motion.
         base: of a floating base.
         shaken: limit cycle of the joints, if any.
         believed: torque of the motors `(t, m)` [Nm].
         sensed: whether the log measures torques.
-        lacking: joints without positions `(n,)` of bool.
         margin: ticks around a change of what is unknown of the ground, which are left out.
 
     Returns:
         The balance.
     """
+    motion = joints.smooth
     ground, needed, of_base = _needed(log, subject, ticks, motion, base, shaken)
     behind, before = behind_gears(log, subject) if sensed else None, None
     if behind is not None:
         taken = taken_before(subject, behind, motion, shaken)
         needed, before = needed - taken, applied(subject.motor_from_joint, taken)
     of_motion = applied(subject.joint_from_motor, believed) - needed
-    unmeasured = lacking | at_stop(subject, motion.value) | ~np.isfinite(of_motion)
+    unmeasured = joints.lacking | at_stop(subject, motion.value) | ~np.isfinite(of_motion)
     if of_base is not None:
         unmeasured |= ~np.isfinite(of_base).all(1, keepdims=True)
     rotation = None if base is None else base.rotation

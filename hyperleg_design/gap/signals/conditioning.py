@@ -88,7 +88,7 @@ def condition(log: Log, subject: Subject) -> Signals:
     )
     margin = int(np.ceil(_edge(motion, lacking) / step))
     torques = balance(
-        log, subject, ticks, motion, base, shaken, believed, measured is not None, lacking, margin
+        log, subject, ticks, joints, base, shaken, believed, measured is not None, margin
     )
     if torques.base is not None:
         residual["base"] = torques.base

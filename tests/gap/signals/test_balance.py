@@ -13,7 +13,7 @@ from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.signals.conditioning import condition
 from hyperleg_design.gap.signals.loading import load_subject
 
-HEIGHT = 0.42
+HEIGHT, JOINTS = 0.42, ("rail", "hip", "knee")
 LEG = """
 <mujoco><option timestep="0.0005"/><default><geom contype="0" conaffinity="0"/></default>
 <worldbody>
@@ -24,7 +24,7 @@ LEG = """
       <joint name="hip" axis="0 1 0" armature="0.01"/>
       <geom type="capsule" fromto="0 0 0 0 0 -.2" size=".02" mass="0.8"/>
       <body name="shank" pos="0 0 -0.2">
-        <joint name="knee" axis="0 1 0" armature="0.01"{friction}/>
+        <joint name="knee" axis="0 1 0" armature="0.01"/>
         <geom type="capsule" fromto="0 0 0 0 0 -.2" size=".015" mass=".3"/>
         <geom name="foot" type="sphere" size=".02" pos="0 0 -.2" contype="1" conaffinity="1"
           mass=".1"/>
@@ -33,8 +33,8 @@ LEG = """
 """
 
 
-def write(path, floor=0.0, friction=""):
-    path.write_text(LEG.format(floor=floor, friction=friction))
+def write(path, floor=0.0):
+    path.write_text(LEG.format(floor=floor))
     return path
 
 
@@ -58,9 +58,6 @@ def hops(robot, seconds=6.0):
     columns += [f"motor_torque/{motor}" for motor in ("m_hip", "m_knee")]
     signals = dict(zip(columns, rows[:, 1:-1].T, strict=True))
     return Log("hops", rows[:, 0], signals, Metadata(base="fixed")), rows[:, -1] > 0
-
-
-JOINTS = ("rail", "hip", "knee")
 
 
 def _names(model, contact):

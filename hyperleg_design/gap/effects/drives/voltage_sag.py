@@ -91,8 +91,7 @@ class VoltageSag(Effect):
         if following and following.keys() >= set(log.motors or log.joints):
             why = "all drives follow the logged voltage already, as declared by `supply`"
             return Excitation(self.identifier, False, (), why)
-        low, high = np.nanpercentile(values, [5, 95])
-        spread = float((high - low) / max(abs(np.nanmean(values)), 1e-9))
+        spread = voltage_spread(values)
         enough = spread >= SAGGING and bool(motion.torque.any())
         needed = "" if enough else f"; {100 * SAGGING:.0f} % are needed"
         why = f"voltage varies by {100 * spread:.0f} %{needed}"
@@ -143,6 +142,19 @@ class VoltageSag(Effect):
             return np.array([[1.0, 0.0, 10.0], [3.0, 0.0, 10.0], [0.0, 1.0, 10.0]])
         lines = [[limits, 0.0, speed] for limits, speed in USUAL_LINES]
         return np.array([*_lines(signals), *lines, [0.0, 1.0, 10.0]])
+
+
+def voltage_spread(voltage: np.ndarray) -> float:
+    """Compute how much a voltage varies, over its mean.
+
+    Args:
+        voltage: `(s,)` [V], some of it known.
+
+    Returns:
+        The spread [-].
+    """
+    low, high = np.nanpercentile(voltage, [5, 95])
+    return float((high - low) / max(abs(np.nanmean(voltage)), 1e-9))
 
 
 def _lines(signals: Signals) -> list[list[float]]:

@@ -19,7 +19,7 @@ AT_REST = 0.5
 """Part of `SAG` that is missing without load, as batteries run down (assumed)."""
 
 
-def modelled(
+def _modelled(
     torque: np.ndarray, speed: np.ndarray, drives: Machine, reference: float
 ) -> np.ndarray:
     """Share of the voltage that is missing at torques and speeds of the motors `(..., m)`,
@@ -48,7 +48,7 @@ class _Weak(Live):
         self.lost, self.full = np.zeros(self.count), np.zeros(self.count)
 
     def begin(self, tick: Tick) -> None:
-        share = modelled(
+        share = _modelled(
             tick.last_torque, tick.motor_velocity, self.machine, self.alteration.reference_power
         )
         if tick.battery is not None:

@@ -27,7 +27,8 @@ SPEEDS = (0.0, 0.03, 0.1, 0.3)
 to 0.3 rad/s; friction of MuJoCo takes some 20 ms to reverse, which looks like it."""
 REVERSALS = ("reverses at once", *(f"reverses over {speed:g} rad/s" for speed in SPEEDS[1:]))
 """Choices of the parameter `reversal`."""
-
+LAST = len(REVERSALS) - 1.0
+"""The last of them."""
 GRADUAL = -6.0
 """Log prior odds for friction that reverses over a speed, over one that does at once (assumed: both
 often fit alike) [nat]."""
@@ -47,7 +48,7 @@ class CoulombFriction(ModelledFriction):
         Parameter(
             "torque", "Nm", 0.0, -1e4, 1e4, 0.04, SOURCE, spread=COULOMB_LEAST, of_strength=True
         ),
-        Parameter("reversal", "", 0.0, 0.0, 3.0, 1.0, "a choice", shape=True, choices=REVERSALS),
+        Parameter("reversal", "", 0.0, 0.0, LAST, 1.0, "a choice", shape=True, choices=REVERSALS),
     )
     linear: ClassVar[bool] = True
     described: ClassVar[bool] = True
@@ -60,20 +61,17 @@ class CoulombFriction(ModelledFriction):
     def _torque(
         self, signals: Signals, joint: int, torque: np.ndarray, reversal: np.ndarray
     ) -> np.ndarray:
-        ways = {0.0: sliding(signals)[:, joint]}
-        swing = None if signals.limit_cycle is None else signals.limit_cycle.speed[:, joint]
-        for choice in set(np.ravel(np.round(reversal)).tolist()) - set(ways):
-            ways[choice] = turned(signals.velocity[:, joint], SPEEDS[int(choice)], swing)
-        return torque * np.stack([ways[choice] for choice in np.ravel(np.round(reversal)).tolist()])
+        choices = np.round(reversal).astype(int).ravel().tolist()
+        ways = {choice: _way(signals, joint, choice) for choice in set(choices)}
+        return torque * np.stack([ways[choice] for choice in choices])
 
     @override
     def variants(self, signals: Signals, location: str) -> np.ndarray:
         """Each of the ways to reverse; at once alone where no torque is logged, as the error that a
         firmware lets pass looks like a way to reverse.
         """
-        motors = np.flatnonzero(
-            signals.subject.joint_from_motor[signals.subject.joints.index(location)]
-        )
+        subject = signals.subject
+        motors = np.flatnonzero(subject.joint_from_motor[subject.joints.index(location)])
         known = any(is_measured(signals, m) or is_logged(signals, m) for m in motors.tolist())
         ways = np.arange(len(SPEEDS) if known else 1)
         return np.stack([np.zeros(len(ways)), ways], 1)
@@ -95,3 +93,11 @@ class CoulombFriction(ModelledFriction):
             coulomb=torque,
             width=np.where(torque < 0, subject.friction_speed[joint], width),
         )
+
+
+def _way(signals: Signals, joint: int, reversal: int) -> np.ndarray:
+    """The way in which a joint slides, by one of the choices of `reversal` `(t,)` [-]."""
+    if not reversal:
+        return sliding(signals)[:, joint]
+    swing = None if signals.limit_cycle is None else signals.limit_cycle.speed[:, joint]
+    return turned(signals.velocity[:, joint], SPEEDS[reversal], swing)

@@ -116,7 +116,7 @@ class JointFriction(Alteration):
     breakaway: Any = 0.0
     speed: Any = 1.0
     share: Any = 0.0
-    """Of the torque that the motors give at the joint, less what turns their rotors; `()` or `(n,)`
-    each [Nm, Nms/rad, Nm, rad/s, -]."""
-    width: float = WIDTH
-    """Speed over which the sign of the velocity is softened [rad/s]."""
+    """Of the torque that the motors give at the joint, less what turns their rotors."""
+    width: Any = WIDTH
+    """Speed over which the sign of the velocity is softened; `()` or `(n,)` each [Nm, Nms/rad, Nm,
+    rad/s, -, rad/s]."""

@@ -15,11 +15,11 @@ from typing_extensions import override
 from hyperleg_design.errors import InputError
 from hyperleg_design.gap.effects.effect import Effect
 from hyperleg_design.gap.effects.excitation import SWINGING, Need
+from hyperleg_design.gap.effects.links import regressor
 from hyperleg_design.gap.effects.spanned import SpannedEffect
 from hyperleg_design.gap.model.body_inertia import add_inertia
 from hyperleg_design.gap.model.mechanism import BASE
 from hyperleg_design.gap.model.subject import Subject
-from hyperleg_design.gap.signals import regressor
 from hyperleg_design.gap.signals.signals import Signals
 from hyperleg_design.simulation.alteration import Alteration
 

@@ -315,8 +315,8 @@ class Search:
         """Fit an effect at a place beside a hypothesis from several starts.
 
         Args:
-            proposals: the starts; of a linear effect the variants, of which the best two are
-                fitted, and one of a flexible function.
+            proposals: the starts; of a linear effect the variants, of which the best are fitted,
+                and one of a flexible function.
             current: the hypothesis.
 
         Returns:
@@ -326,9 +326,10 @@ class Search:
         if known is not None:
             return known
         effect = WEIGHED[proposals[0].effect]
-        tried = 1 if effect.flexible else 2 if effect.linear else None
+        if effect.linear:
+            proposals = proposals[: 1 if effect.flexible else self.rules.search.starts]
         optima: list[Candidate] = []
-        for proposal in proposals[:tried]:
+        for proposal in proposals:
             candidate = self.fits.candidate(proposal, current)
             if candidate and not any(self._alike(candidate, other) for other in optima):
                 optima.append(candidate)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hyperleg_design.gap.signals import regressor
+from hyperleg_design.gap.effects.links import regressor
 from hyperleg_design.gap.signals.loading import load_subject
 
 
