@@ -40,7 +40,7 @@ def of_file(path: Path, base: str | None, known: set[str] | None) -> Subject:
     imu_site = robot_file.imu_site(spec)
     base = robot_file.set_base(spec, base, path)
     stands = base == "floating" or robot_file.has_floor(spec)
-    notes = robot_file.strip_scene(spec, path, contact=stands)
+    notes = robot_file.strip_scene(spec, path, contact=stands) + robot_file.mend_inertias(spec)
     all_joints = [j.name for j in spec.joints]
     free_joints = robot_file.free_joints(all_joints, known, path.name)
     whole = robot_file.compiled(spec, path)

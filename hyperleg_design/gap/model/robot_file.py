@@ -125,6 +125,40 @@ def strip_scene(spec: Any, path: Path, *, contact: bool) -> list[str]:
     return notes
 
 
+def mend_inertias(spec: Any) -> list[str]:
+    """Replace moments of inertia that no body has (a negative one) by the nearest possible ones.
+
+    Possible are those whose matrix of second moments, tr(I) / 2 - I, has no negative eigenvalue.
+    MuJoCo refuses others, which some vendors' files state, of dummy links without mass above all.
+
+    Args:
+        spec: the specification, which is changed.
+
+    Returns:
+        A note on the bodies that were changed, if any were.
+    """
+    changed = []
+    for body in spec.bodies:
+        stated = np.asarray(body.fullinertia, float)
+        if np.isnan(stated).any():
+            continue
+        xx, yy, zz, xy, xz, yz = stated
+        inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        if np.linalg.eigvalsh(inertia)[0] > 0:
+            continue
+        values, vectors = np.linalg.eigh(np.trace(inertia) / 2 * np.eye(3) - inertia)
+        moments = (vectors * np.maximum(values, SMALLEST_INERTIA)) @ vectors.T
+        mended = np.trace(moments) * np.eye(3) - moments
+        body.fullinertia = [*np.diag(mended), mended[0, 1], mended[0, 2], mended[1, 2]]
+        changed.append(body.name)
+    if not changed:
+        return []
+    return [
+        f"inertia of {', '.join(changed)} is none that a body can have; the nearest possible one "
+        f"is taken"
+    ]
+
+
 def compiled(spec: Any, path: Path) -> Any:
     """Compile a model, and repair small errors of its numbers where MuJoCo refuses it.
 

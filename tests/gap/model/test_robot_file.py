@@ -28,3 +28,32 @@ def test_corners_and_ends_touch_first():
     assert radius == 0.05
     np.testing.assert_allclose(sorted(ends[:, 2]), [0, 0.4], atol=1e-9)
     assert robot_file.touching_points(model, 2)[1] == 0.07
+
+
+def test_an_inertia_that_no_body_has_becomes_the_nearest_possible(tmp_path):
+    path = tmp_path / "robot.urdf"
+    possible = '<inertia ixx="0.02" iyy="0.021" izz="0.006" ixy="0.001" ixz="-0.002" iyz="0.0005"/>'
+    impossible = '<inertia ixx="0.02" iyy="0.02" izz="0.01" ixy="0.03" ixz="0" iyz="0"/>'
+    path.write_text(
+        '<robot name="r"><link name="base"/>'
+        f'<link name="arm"><inertial><mass value="1"/>{possible}</inertial></link>'
+        f'<link name="hand"><inertial><mass value="1"/>{impossible}</inertial></link>'
+        '<joint name="a" type="revolute"><parent link="base"/><child link="arm"/>'
+        '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9" velocity="9"/></joint>'
+        '<joint name="b" type="revolute"><parent link="arm"/><child link="hand"/>'
+        '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9" velocity="9"/></joint></robot>'
+    )
+    spec = robot_file.read_spec(path)
+    with pytest.raises(ValueError, match="positive eigenvalues"):
+        spec.compile()
+    (note,) = robot_file.mend_inertias(spec)
+    assert "hand" in note
+    assert "arm" not in note
+    model = robot_file.compiled(spec, path)
+    arm = model.body_inertia[model.body("arm").id]
+    stated = [[0.02, 0.001, -0.002], [0.001, 0.021, 0.0005], [-0.002, 0.0005, 0.006]]
+    np.testing.assert_allclose(np.sort(arm), np.linalg.eigvalsh(stated), rtol=1e-6)
+    hand = np.sort(model.body_inertia[model.body("hand").id])
+    # moments of inertia -0.01, 0.01, 0.05: the second moments are 0.035, 0.015 and -0.025
+    np.testing.assert_allclose(hand, [0.015, 0.035, 0.05], rtol=1e-4)
+    assert robot_file.mend_inertias(spec) == []
