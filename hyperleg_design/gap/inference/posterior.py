@@ -182,11 +182,15 @@ def _main_causes(
         shares: that each of its causes closes of the gap.
         rules: of the inference.
     """
-    closed = dict.fromkeys(certain, -np.inf)
-    for (place, _), share in zip(expanded(best.candidates), shares, strict=True):
-        if place in closed:
-            closed[place] = max(closed[place], share)
     own = rules.posterior
+    closed = {
+        place: max(
+            share
+            for (_, candidate), share in zip(expanded(best.candidates), shares, strict=True)
+            if candidate is best.candidates[place]
+        )
+        for place in certain
+    }
     main = tuple(
         place
         for place, probability in certain.items()

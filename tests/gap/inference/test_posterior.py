@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hyperleg_design.gap.inference.channels.scales import Scales
-from hyperleg_design.gap.inference.hypotheses.hypothesis import Candidate, Hypothesis
+from hyperleg_design.gap.inference.hypotheses.hypothesis import EVERYWHERE, Candidate, Hypothesis
 from hyperleg_design.gap.inference.hypotheses.search import Result
 from hyperleg_design.gap.inference.posterior import changes_first, posterior_of, untold
 from hyperleg_design.gap.inference.rules import InferenceRules
@@ -129,6 +129,17 @@ def test_of_causes_that_all_close_little_each_is_named():
     both = hypothesis(40.0, ("a", "x"), ("b", "y"))
     found = answer(hypothesis(0.0), both, alone={2.0: 0.05, 1.0: 0.02})
     assert (len(found.order), found.minor) == (2, ())
+
+
+def test_an_effect_at_all_places_closes_what_it_closes_at_one_of_them():
+    everywhere = Candidate("a", EVERYWHERE, (cause("a", "x"), cause("a", "y")))
+    little = Candidate("b", "z", (cause("b", "z"),))
+    both = Hypothesis(
+        (everywhere, little), np.array([3.0, 2.0, 1.0]), np.eye(3), (HEALTHY,), 40.0, 0.0
+    )
+    found = answer(hypothesis(0.0), both, alone={3.0: 0.02, 2.0: 0.9, 1.0: 0.03})
+    assert [found.hypothesis.candidates[i].effect for i in found.order] == ["a"]
+    assert [found.hypothesis.candidates[i].effect for i in found.minor] == ["b"]
 
 
 def test_what_stands_in_the_references_is_no_change():
