@@ -107,6 +107,10 @@ class Check:
         }
 
 
+ROBOT = "robot"
+"""What findings that are about the model of the robot, not a log, state as their signal."""
+
+
 def check_log(log: Log, subject: Subject | None = None) -> Check:
     """Check one log for what it can and cannot show.
 
@@ -127,6 +131,7 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
     measured = not any(f.signal == "t" or f.signal.startswith("position/") for f in refused)
     findings = [
         *(Finding(NOTE, "", remark, "") for remark in log.metadata.remarks),
+        *(Finding(NOTE, ROBOT, note, "") for note in (subject.notes if subject else ())),
         *refused,
         *_required(log, subject),
         *_clock(sampling),

@@ -50,9 +50,6 @@ def assembled(
     count, motors = tree.count, joint_from_motor.shape[1]
     file_joints.take_out_friction(model)
     low, high = file_joints.limits(model)
-    if unlogged:
-        still = f"joints in no log, held still where the model draws them: {', '.join(unlogged)}"
-        notes = (*notes, still)
     optional = {"gear": np.ones(motors), "spring": np.zeros(count), "spring_rest": np.zeros(count)}
     subject = Subject(
         path=str(path),

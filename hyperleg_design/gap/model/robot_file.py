@@ -154,8 +154,8 @@ def mend_inertias(spec: Any) -> list[str]:
     if not changed:
         return []
     return [
-        f"inertia of {', '.join(changed)} is none that a body can have; the nearest possible one "
-        f"is taken"
+        f"impossible inertia (no positive moments) of {', '.join(changed)}: the nearest possible "
+        f"one is taken"
     ]
 
 

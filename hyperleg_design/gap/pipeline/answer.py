@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import expit
 
 from hyperleg_design import provenance
-from hyperleg_design.gap.checks.check import Check
+from hyperleg_design.gap.checks.check import ROBOT, Check
 from hyperleg_design.gap.checks.coverage import beyond_references
 from hyperleg_design.gap.effects import EFFECTS, UNLISTED
 from hyperleg_design.gap.effects.sensors.imu_bias import IMU
@@ -286,7 +286,9 @@ class Answer:
         texts = []
         for check in checks:
             texts += [
-                f"{check.name}: {f.severity}: {f.signal + ' ' if f.signal else ''}{f.what}"
+                f"{ROBOT}: {f.what}"
+                if f.signal == ROBOT
+                else f"{check.name}: {f.severity}: {f.signal + ' ' if f.signal else ''}{f.what}"
                 for f in check.findings
                 if f.severity in (WARNING, NOTE)
             ]

@@ -5,8 +5,9 @@ import pytest
 from rig import rig_log, spoiled
 
 from hyperleg_design.errors import InputError
-from hyperleg_design.gap.checks.check import check_log
+from hyperleg_design.gap.checks.check import ROBOT, check_log
 from hyperleg_design.gap.logs.metadata import Metadata
+from hyperleg_design.gap.model.file_subject import of_file
 from hyperleg_design.gap.results.finding import ERROR, NOTE, WARNING
 
 
@@ -137,3 +138,19 @@ def test_real_logs(real_logs):
         assert "thermal_derating" not in check.shown
     go2 = check_log(open_log(real_logs / "go2_air")[0])
     assert [f.signal for f in go2.errors] == ["position_target"]  # gains are not in the file
+
+
+def test_what_is_left_out_of_a_robots_file_is_told(tmp_path):
+    path = tmp_path / "two.xml"
+    path.write_text(
+        '<mujoco><worldbody><body><joint name="hip" axis="0 1 0" range="-90 90"/>'
+        '<geom size="0.1"/><body pos="0 0 -0.3"><joint name="knee" axis="0 1 0" range="-90 90"/>'
+        '<geom size="0.1"/></body></body></worldbody>'
+        '<equality><joint joint1="hip" joint2="knee"/></equality></mujoco>'
+    )
+    notes = [what for signal, what in told(rig_log(), of_file(path, None, None)) if signal == ROBOT]
+    assert notes == ["1 equality constraints (closed loops, mimic joints) are left out"]
+
+
+def told(log, subject):
+    return [(f.signal, f.what) for f in check_log(log, subject).findings if f.severity == NOTE]
