@@ -50,7 +50,8 @@ class Evidence:
     usual: Mapping[tuple[str, str, int], float]
     """Deviation of the usual calibration error of an effect's parameter at a place."""
     moved: tuple[float, ...]
-    """Share of the numbers of each channel in which the torque of its drives is no noise."""
+    """Share of the numbers of each channel in which the torque of its drives is more than noise of
+    the needed one."""
     expected: tuple[float, ...]
     """Independent numbers that the expected noise of each channel's references counts for."""
 
@@ -58,6 +59,8 @@ class Evidence:
         """Compute what scaling torques costs, as far as they are no noise in the channels that are
         made of them: once in each equation that holds them, in the channel where most of them are.
         A measured torque is compared with what the motion needs, and with what was asked for.
+        A larger torque gains in the motion alone: where little of what is asked for is given, as
+        by a slow drive, the residual of the drive does not grow with it.
 
         Where they are scaled in all logs, friction and rotors may be, too, and all that is left to
         gain is noise nearer to the expected one: that counts for nothing, by larger torques or by
@@ -81,7 +84,9 @@ class Evidence:
                 numbers[kind] = max(numbers.get(kind, (0.0, row)), (number, row))
         _, at = max(numbers.values(), default=(0.0, factor.row))
         number = sum(number for number, _ in numbers.values())
-        return replace(factor, number=number, row=at, shows=0.0 if standing else factor.shows)
+        needed = sum(own for kind, (own, _) in numbers.items() if kind not in MOTORS)
+        shows = 0.0 if standing else factor.shows * needed / max(number, 1e-300)
+        return replace(factor, number=number, row=at, shows=shows)
 
     def scaled(self, cause: Cause) -> Cause:
         """Give the terms of a cause that scale torques the number of samples that they count for.
@@ -228,8 +233,8 @@ class _Cell(NamedTuple):
 def _channel(
     key: tuple[str, int], sets: Sequence[LogSet], rules: InferenceRules
 ) -> tuple[Channel, float]:
-    """A channel, and the share of its numbers under test in which the torque of its drives is no
-    noise.
+    """A channel, and the share of its numbers under test in which the torque of its drives is more
+    than noise of the needed one.
     """
     parts = [(logs, row) for logs in sets if (row := logs.row(key)) is not None]
     present, moved = [logs for logs, _ in parts], 1.0
@@ -301,8 +306,8 @@ def _cells(logs: LogSet, row: int, columns: np.ndarray, number: int, first: int)
 
 def _load_noise(key: tuple[str, int], sets: Sequence[LogSet]) -> tuple[list[np.ndarray], float]:
     """Columns of the part of the load that is noise or vibration in each band, over all sets
-    `(columns, S)` each, and the share of the numbers under test in which the drives' torque is no
-    noise.
+    `(columns, S)` each, and the share of the numbers under test in which the drives' torque is more
+    than noise of the needed one.
 
     Such noise is in the residual and in every trace that holds the load or its derivatives. A cause
     must not gain by it: the load, and its second derivative, have a prior deviation of the share of
@@ -323,15 +328,15 @@ def _load_noise(key: tuple[str, int], sets: Sequence[LogSet]) -> tuple[list[np.n
                 filtered.signals.believed,
             )[:, 0]
             slow, fast, driven = filtered.sample(place, np.stack([torque, twice, given]))
-            _, rate = noise_model.of_acceleration(filtered, place)
+            feigned, rate = noise_model.of_acceleration(filtered, place)
+            needed = feigned + noise_model.of_load(filtered, place)
             expected = logs.samples.floor[places[place]] ** 2
             band = filtered.labels(place)[0]
             for b in np.unique(band).tolist():
                 mine = band == b
-                noise = float(np.mean(expected[mine]))
                 share, idle = (
-                    min(noise / max(float(np.mean(torques[mine] ** 2)), 1e-300), 1.0)
-                    for torques in (slow, driven)
+                    min(float(np.mean(noise[mine]) / max(np.mean(torque[mine] ** 2), 1e-300)), 1.0)
+                    for noise, torque in ((expected, slow), (needed, driven))
                 )
                 at = np.arange(places[place].start, places[place].stop)[mine]
                 if logs.tested:

@@ -30,6 +30,23 @@ def test_a_channel_that_is_mostly_noise_is_fitted_too(loud):
     assert np.isfinite(scales.noise).all()
 
 
+@pytest.mark.parametrize(
+    ("signal", "noise", "low", "high"),
+    [("motor_torque", 5.0, 0.95, 1.0), ("position", 3e-3, 0, 0.6)],
+)
+def test_scaled_torques_pay_for_their_own_noise_and_not_for_that_of_accelerations(
+    robot_files, signal, noise, low, high
+):
+    log, rng = diagnosed.run("healthy", 0), np.random.default_rng(3)
+    noisy = {
+        name: values + rng.normal(0, noise, len(log.time))
+        for name, values in log.signals.items()
+        if name.startswith(f"{signal}/")
+    }
+    evidence = diagnosed.evidence(robot_files["coupled"], log.changed(signals=log.signals | noisy))
+    assert all(low <= share <= high for share in evidence.moved)
+
+
 def test_only_errors_of_how_a_robot_is_built_and_set_are_the_same_in_all_sessions(robot_files):
     log = diagnosed.run("limited", 0)
     before = log.changed(metadata=replace(log.metadata, session="before", role="reference"))
@@ -81,3 +98,17 @@ def test_a_reading_that_is_off_pays_in_the_residual_of_its_drive_whatever_else_s
     # a ratio scales the torque at the joint, a reading also what is compared with commands
     reading, ratio = (one.factors[0].number for one in causes.values())
     assert reading > 1.5 * ratio > 0
+
+
+def test_a_larger_reading_gains_nothing_in_the_residual_of_its_drive(robot_files):
+    evidence = diagnosed.evidence(robot_files["coupled"], diagnosed.run("limited", 0))
+    effect = WEIGHED["torque_constant"]
+    (reading, motor) = (
+        evidence.on_all_samples(
+            linearise(evidence.tests, effect, "m_front", np.array([1.0, choice])), False
+        ).factors[0]
+        for choice in (1.0, 0.0)
+    )
+    more = np.array([1.0])
+    assert reading.log(-more) < motor.log(-more) < 0
+    np.testing.assert_allclose(reading.log(more), motor.log(more), rtol=1e-9)

@@ -26,6 +26,8 @@ class ModelledFriction(JointTorque):
     resists: ClassVar[bool] = True
     model_spread: ClassVar[float] = 0.08
     """Usual error of the model's friction, over it."""
+    most: ClassVar[float] = 1.0
+    """Largest size, over the largest torque of the joint, in units of the size."""
 
     @staticmethod
     def modelled(subject: Subject) -> np.ndarray:
@@ -56,7 +58,7 @@ class ModelledFriction(JointTorque):
     def bounds(self, location: str, subject: Subject) -> np.ndarray:
         """Usual bounds, up to the largest torque of the joint, and down to no friction at all."""
         bounds, joint = super().bounds(location, subject), subject.joints.index(location)
-        bounds[1, 0] = min(bounds[1, 0], largest_torque(subject)[joint])
+        bounds[1, 0] = min(bounds[1, 0], self.most * largest_torque(subject)[joint])
         if self.described:
             bounds[0, 0] = -self.modelled(subject)[joint]
         return bounds

@@ -37,6 +37,7 @@ class ViscousFriction(ModelledFriction):
     linear: ClassVar[bool] = True
     described: ClassVar[bool] = True
     model_spread: ClassVar[float] = 0.12
+    most: ClassVar[float] = 10.0  # a joint may turn at 0.1 rad/s at most (assumed)
     needs: ClassVar[Need] = Need(
         lambda motion: motion.reversing & (motion.spread > SPEED_SPREAD),
         "speeds differ",
