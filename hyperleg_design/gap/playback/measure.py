@@ -151,9 +151,7 @@ def _rows(group: Sequence[Sheet], floors: dict[tuple[str, str, str], np.ndarray]
     key = (first.signal, first.kind)
     names = first.names
     default = floors.get((*key, "all"), np.zeros(len(names)))
-    size = np.full(len(names), np.nan)
-    if np.isfinite(group[0].size).any():
-        size = np.sqrt(np.nanmean(np.square([s.size for s in group]), 0))
+    size = root_mean_square(np.array([s.size for s in group]))
     whole = 0.0
     squares: dict[str, np.ndarray] = {}
     rows: list[tuple[int, Row]] = []

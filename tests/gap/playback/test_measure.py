@@ -72,3 +72,18 @@ def test_table_and_bands(robot_files, runs, stiction):
 def test_no_logs():
     with pytest.raises(InputError, match="at least one log"):
         measure([])
+
+
+@pytest.mark.filterwarnings("error")
+def test_motors_whose_torque_nobody_logs_are_left_out(robot_files, runs):
+    whole = runs["arm"]
+    dropped = {
+        column: values
+        for column, values in whole.signals.items()
+        if not column.startswith("position_target/")
+        and not (column.startswith("motor_torque") and column.endswith("/a3"))
+    }
+    (log,) = conditioned(robot_files["arm"], whole.changed(signals=dropped))
+    places = {row.location for row in measure([log]).select("torque")}
+    assert "elbow" not in places
+    assert len(places) == 5
