@@ -29,6 +29,7 @@ from hyperleg_design.validation.newcomers.quadruped_cases import quadruped_cases
 from hyperleg_design.validation.newcomers.servo_cases import servo_cases
 from hyperleg_design.validation.real.cases import real_cases
 from hyperleg_design.validation.real.drawn import drawn_cases
+from hyperleg_design.validation.real.tiago import tiago_cases
 from hyperleg_design.validation.spread import spread
 from hyperleg_design.writing import MARKER, check_output_folder, write_json, write_text
 
@@ -57,7 +58,7 @@ class Outcome:
 def all_cases() -> list[Case]:
     """Every case of this version."""
     newcomers = newcomer_cases, crane_cases, servo_cases, quadruped_cases
-    suites = real_cases, drawn_cases, *newcomers, blind_cases
+    suites = real_cases, drawn_cases, tiago_cases, *newcomers, blind_cases
     cases = [case for suite in suites for case in suite()]
     names = [case.name for case in cases]
     assert len(set(names)) == len(names), "names of cases are unique"

@@ -16,6 +16,7 @@ PUBLISHED = sorted((DOCS / "benchmark").glob("*.json"))
 ROBOTS = {
     "double pendulum": "a0",
     "double pendulum, drawn faults": "drawn",
+    "arm of a TIAGo, drawn faults": "tiago",
     "servo XL330 with a pendulum": "xl330",
     "servo arm SO-101": "so101",
     "quadruped Go2 in the air": "go2",
