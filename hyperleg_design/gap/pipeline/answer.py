@@ -173,18 +173,32 @@ class Answer:
             if own is not candidate:
                 continue
             cause = hypothesis.causes[place]
-            values = hypothesis.values(place)
             deviation = self.rules.posterior.interval * hypothesis.deviation(place)
-            clear = np.abs(values - cause.nulls) / np.maximum(deviation, 1e-300)
-            stands = float(np.max(np.where(cause.shape, 0.0, clear)))
             closed = self.closed_by(hypothesis, place)
+            values = hypothesis.values(place)
             sizes = intervals(cause, values, deviation, subject, self.torque_error)
-            sized.append((stands, Named(cause.effect, cause.location, probability, closed, sizes)))
+            named = Named(cause.effect, cause.location, probability, closed, sizes)
+            sized.append((self.stands(hypothesis, place), named))
         sized.sort(key=lambda entry: -entry[0])
         rules = self.rules.posterior
         clear_ones = [named for stands, named in sized if stands >= rules.clear]
         closing = [named for named in clear_ones if named.closed >= rules.least_closed]
         return closing or clear_ones or [sized[0][1]]
+
+    def stands(self, hypothesis: Hypothesis, place: int) -> float:
+        """Compute how far the sizes of a cause are from those of nothing.
+
+        Args:
+            hypothesis: the hypothesis.
+            place: index of the cause among its causes.
+
+        Returns:
+            In standard deviations, of the parameter that is farthest.
+        """
+        cause = hypothesis.causes[place]
+        deviation = self.rules.posterior.interval * hypothesis.deviation(place)
+        away = np.abs(hypothesis.values(place) - cause.nulls) / np.maximum(deviation, 1e-300)
+        return float(np.max(np.where(cause.shape, 0.0, away)))
 
     @property
     def torque_error(self) -> float:
@@ -332,11 +346,14 @@ class Answer:
         return texts
 
     def ends(self) -> list[str]:
-        """Sizes of causes that are at an end of the range that is tried, in words."""
+        """Sizes of causes that are at an end of the range that is tried, in words; of an effect at
+        all of its places, where it clearly acts.
+        """
         places: dict[tuple[str, str], list[str]] = {}
-        hypothesis = self.posterior.hypothesis
-        for place, cause in enumerate(hypothesis.causes):
-            if cause.effect in UNLISTED:
+        hypothesis, least = self.posterior.hypothesis, self.rules.posterior.clear
+        for place, candidate in expanded(hypothesis.candidates):
+            cause, alone = hypothesis.causes[place], len(candidate.causes) == 1
+            if cause.effect in UNLISTED or not (alone or self.stands(hypothesis, place) >= least):
                 continue
             values, parameters = hypothesis.values(place), EFFECTS[cause.effect].parameters
             at_end = np.isclose(values, cause.low) | np.isclose(values, cause.high)
