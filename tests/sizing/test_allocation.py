@@ -9,9 +9,9 @@ from hyperleg_design.robot.models import rigid_body_model
 from hyperleg_design.robot.names import VARIANTS
 from hyperleg_design.robot.transmission import joint_from_motor
 from hyperleg_design.sizing.allocation import RIDGE, least_heat
-from hyperleg_design.sizing.capability import posture
 from hyperleg_design.sizing.contacts import contact_kinematics
 from hyperleg_design.sizing.envelope import motor_envelope, torque_limits
+from hyperleg_design.sizing.postures import posture
 
 WEIGHT = 32.0 * 9.81
 

@@ -19,7 +19,8 @@ from hyperleg_design.robot.transmission import max_joint_torque
 from hyperleg_design.robot.trees.tree_load import tree_design_from_mapping
 from hyperleg_design.simulation.isaac import isaac_actuators
 from hyperleg_design.sizing.analysis import analyze
-from hyperleg_design.sizing.capability import largest_force, posture
+from hyperleg_design.sizing.capability import largest_force
+from hyperleg_design.sizing.postures import posture
 from tests.robot.tree_files import SHIPPED, leg, leg_file
 
 
