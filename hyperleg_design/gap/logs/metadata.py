@@ -127,7 +127,11 @@ NUMBERS: dict[str, tuple[int, Callable[[Any], bool], str]] = {
         lambda pair: min(pair) >= 0,
         "expects [stiffness Nm/rad, damping Nms/rad], neither negative",
     ),
-    "torque_constant": (0, lambda constant: constant > 0, "expects Nm/A, above 0"),
+    "torque_constant": (
+        0,
+        lambda constant: constant > 0,
+        "expects Nm/A, above 0; change the sign of a current that counts the other way",
+    ),
     "supply": (
         3,
         lambda line: min(line) > 0,
