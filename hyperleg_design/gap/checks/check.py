@@ -134,6 +134,7 @@ def check_log(log: Log, subject: Subject | None = None) -> Check:
         *(Finding(NOTE, ROBOT, note, "") for note in (subject.notes if subject else ())),
         *refused,
         *_required(log, subject),
+        *(_untold(log, subject) if measured and not refused and subject is not None else ()),
         *_clock(sampling),
         *_columns(columns, sampling),
         *(implausible(log, subject) if measured else ()),
@@ -203,6 +204,30 @@ def _required(log: Log, subject: Subject | None) -> Iterator[Finding]:
     if not targets and not torques and not currents:
         remedy = "log position_target with gains, motor_torque or motor_current"
         yield Finding(ERROR, "", "neither targets nor torques nor currents", remedy)
+
+
+def _untold(log: Log, subject: Subject) -> Iterator[Finding]:
+    """Joints of a log whose torque no signal tells, where it tells that of others."""
+    try:
+        declared = subject.declare(log.metadata)
+    except InputError:  # `declarations` reports it
+        return
+    steered = {
+        joint
+        for joint, gains in zip(subject.joints, declared.gains, strict=True)
+        if log.has("position_target", joint) and np.isfinite(gains).any()
+    }
+    told = {joint for joint in subject.joints if log.has("joint_torque", joint)} | steered
+    for motor, names in enumerate(zip(subject.motors, subject.motor_aliases, strict=True)):
+        kinds = ["motor_torque", "motor_torque_command"]
+        if np.isfinite(declared.torque_constant[motor]):
+            kinds.append("motor_current")
+        if any(log.has(kind, name) for kind in kinds for name in names):
+            told |= {subject.joints[i] for i in np.flatnonzero(subject.joint_from_motor[:, motor])}
+    untold = [joint for joint in subject.joints if joint in log.joints and joint not in told]
+    if told and untold:
+        text = f"torque of {', '.join(untold)} is in no signal: faults there show in other joints"
+        yield Finding(NOTE, "", text, "log their torques or currents")
 
 
 def _clock(sampling: Sampling) -> Iterator[Finding]:

@@ -81,8 +81,7 @@ def condition(log: Log, subject: Subject) -> Signals:
     if slip is not None:
         residual["transmission"] = slip
     limited = None if command is None else limited_torque(subject, command, speed, voltage, jump)
-    believed, more = _believed(log, subject, measured, limited)
-    notes += more
+    believed = _believed(log, subject, measured, limited)
     shaken = limit_cycle(
         resampled(log.time, position, ticks), resampled(log.time, velocity, ticks), motion, step
     )
@@ -296,7 +295,7 @@ def _measured(log: Log, subject: Subject, ticks: np.ndarray) -> np.ndarray | Non
 
 def _believed(
     log: Log, subject: Subject, measured: np.ndarray | None, limited: np.ndarray | None
-) -> tuple[np.ndarray, list[str]]:
+) -> np.ndarray:
     if measured is None and limited is None:
         lacks = "targets"
         if log.names("position_target"):
@@ -314,9 +313,7 @@ def _believed(
         assert believed is not None
     else:
         believed = np.where(np.isfinite(measured).any(0), measured, limited)
-    blind = ~np.isfinite(believed).any(0)
-    note = f"motors whose torque nothing tells: {_names(subject.motors, blind)}"
-    return believed.copy(), [note] if blind.any() else []
+    return believed.copy()
 
 
 def _voltage(log: Log, ticks: np.ndarray) -> np.ndarray | None:

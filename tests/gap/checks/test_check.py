@@ -140,16 +140,32 @@ def test_real_logs(real_logs):
     assert [f.signal for f in go2.errors] == ["position_target"]  # gains are not in the file
 
 
-def test_what_is_left_out_of_a_robots_file_is_told(tmp_path):
-    path = tmp_path / "two.xml"
+@pytest.fixture(scope="module")
+def two_joints(tmp_path_factory):
+    path = tmp_path_factory.mktemp("robot") / "two.xml"
     path.write_text(
         '<mujoco><worldbody><body><joint name="hip" axis="0 1 0" range="-90 90"/>'
         '<geom size="0.1"/><body pos="0 0 -0.3"><joint name="knee" axis="0 1 0" range="-90 90"/>'
         '<geom size="0.1"/></body></body></worldbody>'
         '<equality><joint joint1="hip" joint2="knee"/></equality></mujoco>'
     )
-    notes = [what for signal, what in told(rig_log(), of_file(path, None, None)) if signal == ROBOT]
+    return of_file(path, None, None)
+
+
+def test_what_is_left_out_of_a_robots_file_is_told(two_joints):
+    notes = [what for signal, what in told(rig_log(), two_joints) if signal == ROBOT]
     assert notes == ["1 equality constraints (closed loops, mimic joints) are left out"]
+
+
+def test_joints_whose_torque_no_signal_tells_are_told(two_joints):
+    log = rig_log()
+    assert not [what for _, what in told(log, two_joints) if "is in no signal" in what]
+    blind = spoiled(log, position_target__knee=None, **{f"{t}__knee": None for t in TORQUES})
+    (note,) = (what for _, what in told(blind, two_joints) if "is in no signal" in what)
+    assert note.startswith("torque of knee is")
+
+
+TORQUES = "motor_torque", "motor_torque_command", "motor_current"
 
 
 def told(log, subject):
