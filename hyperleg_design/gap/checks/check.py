@@ -217,15 +217,15 @@ def _untold(log: Log, subject: Subject) -> Iterator[Finding]:
         for joint, gains in zip(subject.joints, declared.gains, strict=True)
         if log.has("position_target", joint) and np.isfinite(gains).any()
     }
-    told = {joint for joint in subject.joints if log.has("joint_torque", joint)} | steered
+    known = {joint for joint in subject.joints if log.has("joint_torque", joint)} | steered
     for motor, names in enumerate(zip(subject.motors, subject.motor_aliases, strict=True)):
         kinds = ["motor_torque", "motor_torque_command"]
         if np.isfinite(declared.torque_constant[motor]):
             kinds.append("motor_current")
         if any(log.has(kind, name) for kind in kinds for name in names):
-            told |= {subject.joints[i] for i in np.flatnonzero(subject.joint_from_motor[:, motor])}
-    untold = [joint for joint in subject.joints if joint in log.joints and joint not in told]
-    if told and untold:
+            known |= {subject.joints[i] for i in np.flatnonzero(subject.joint_from_motor[:, motor])}
+    untold = [joint for joint in subject.joints if joint in log.joints and joint not in known]
+    if known and untold:
         text = f"torque of {', '.join(untold)} is in no signal: faults there show in other joints"
         yield Finding(NOTE, "", text, "log their torques or currents")
 
