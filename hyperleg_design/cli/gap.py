@@ -235,6 +235,8 @@ class Excite(Printing):
     """How the robot is held; the rig holds the base fixed."""
     set: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """Parameter of a design to change, PATH=VALUE; may be repeated."""
+    joints: tuple[str, ...] = ()
+    """Joints that move; others are held still. All by default."""
     rate: Annotated[float, AtLeast(0, exclusive=True)] = 200.0
     """Sampling rate of the targets [Hz]."""
     without_torque: bool = False
@@ -259,6 +261,7 @@ class Excite(Printing):
             kinds=self.format,
             seed=self.seed,
             overrides=self.set,
+            joints=self.joints,
             progress=not self.json,
         )
         self.tell(json_module.loads((self.out / "plan.json").read_text()), text)

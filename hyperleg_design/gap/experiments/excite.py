@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hyperleg_design.errors import InfeasibleError, InputError
+from hyperleg_design.errors import InfeasibleError, InputError, meant
 from hyperleg_design.gap.experiments import information as info
 from hyperleg_design.gap.experiments.designed_experiment import CLEAR, Experiment
 from hyperleg_design.gap.experiments.information import Blocks
@@ -248,6 +248,7 @@ def excite(
     kinds: str = "csv",
     seed: int = 0,
     overrides: Sequence[str] = (),
+    joints: Sequence[str] = (),
     progress: bool = False,
 ) -> Experiment:
     """Design the experiments for a rig and write targets and plan into a folder; texts and figures
@@ -263,6 +264,7 @@ def excite(
         kinds: one of `FORMATS`.
         seed: of the Fourier series' phases.
         overrides: of a design.
+        joints: that move, others being held still; all by default.
         progress: show a bar.
 
     Returns:
@@ -279,7 +281,7 @@ def excite(
             "excite", "base", base, "expects fixed: these motions need a rig that holds the robot"
         )
     experiment = design_experiment(
-        fixed_subject(str(robot), overrides),
+        fixed_subject(str(robot), overrides, joints),
         rate=rate,
         noise=noise,
         torque=torque,
@@ -292,17 +294,25 @@ def excite(
     return experiment
 
 
-def fixed_subject(robot: str, overrides: Sequence[str] = ()) -> Subject:
+def fixed_subject(robot: str, overrides: Sequence[str] = (), joints: Sequence[str] = ()) -> Subject:
     """Load a robot with its base held.
 
     Args:
         robot: a design, MJCF or URDF.
         overrides: of a design, `path=value` each.
+        joints: that move, others being held still; all by default.
 
     Returns:
         The nominal model.
 
     Raises:
-        InputError: it cannot be read.
+        InputError: it cannot be read, or has no such joint.
     """
-    return load_subject(robot, overrides=overrides or None, base="fixed")
+    subject = load_subject(robot, overrides=overrides or None, base="fixed", joints=joints)
+    for joint in joints:
+        if joint not in subject.joints:
+            remedy = (
+                f"is no joint of this robot; {meant(joint, (*subject.joints, *subject.unlogged))}"
+            )
+            raise InputError("excite", "joints", joint, remedy)
+    return subject

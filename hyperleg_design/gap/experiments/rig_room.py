@@ -127,7 +127,7 @@ def room_of(subject: Subject) -> Room:
         joint = subject.joints[int(np.argmin(high - low))]
         raise InfeasibleError(
             f"{subject.name}: joint {joint} has no range to move in; give its limits in the "
-            f"robot's file"
+            f"robot's file, or name the joints that are to move (--joints)"
         )
     strength = joint_strength(subject)
     stuck = np.flatnonzero(~subject.passive & (subject.coulomb > TORQUE_SHARE * strength))

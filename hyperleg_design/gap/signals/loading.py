@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +27,7 @@ def load_subject(
     *,
     overrides: Iterable[str] | None = None,
     base: str = "",
+    joints: Collection[str] = (),
 ) -> Subject:
     """Load the nominal model of a robot and make it fit logs.
 
@@ -38,6 +39,7 @@ def load_subject(
             first here, and from each in `conditioning.condition`.
         overrides: of our design, `path=value` each; by default those of the logs.
         base: `fixed` or `floating`; by default as the logs say, else as in the file.
+        joints: that move, where there are no logs; all by default.
 
     Returns:
         The robot.
@@ -60,7 +62,7 @@ def load_subject(
     stated = next((m.overrides for m in metadata if m.overrides), ())
     chosen = stated if overrides is None else tuple(overrides)
     path = _find(robot, logs, named)
-    known = set().union(*(log.joints for log in logs)) if logs else None
+    known = set(joints).union(*(log.joints for log in logs)) if joints or logs else None
     if path.suffix.lower() in (".yaml", ".yml"):
         bare = of_design(load_robot(path, overrides=chosen), path, base, known)
     else:

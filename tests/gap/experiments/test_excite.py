@@ -118,3 +118,12 @@ def test_a_floating_robot_is_put_on_a_rig_where_it_needs_no_pads(tmp_path):
     assert held.joints == ("hip", "knee")
     with pytest.raises(InputError, match="base"):
         design_experiment(load_subject("hyperleg"))
+
+
+def test_joints_that_are_not_named_are_held(robot_files):
+    held = fixed_subject(str(robot_files["arm"]), joints=("elbow", "wrist_1"))
+    assert held.joints == ("elbow", "wrist_1")
+    with pytest.raises(InputError, match="elbow"):
+        fixed_subject(str(robot_files["arm"]), joints=("elbow", "ellbow"))
+    with pytest.raises(InputError, match="joints"):
+        fixed_subject(str(robot_files["arm"]), joints=("nose",))
