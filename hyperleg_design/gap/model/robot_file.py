@@ -19,6 +19,9 @@ from hyperleg_design.gap.model.mechanism import quaternion_rotation
 SMALLEST_MASS = 1e-6
 SMALLEST_INERTIA = 1e-9
 """Given to moving links of a file that have none [kg, kg m^2], as MuJoCo needs some."""
+ROUNDING = 1e-15
+"""Moment of inertia below zero that is rounding in a file, of a link without any [kg m^2]
+(assumed: iCub's file has -2e-22)."""
 
 
 def read_spec(path: Path) -> Any:
@@ -128,8 +131,8 @@ def strip_scene(spec: Any, path: Path, *, contact: bool) -> list[str]:
 def mend_inertias(spec: Any) -> list[str]:
     """Replace moments of inertia that no body has (a negative one) by the nearest possible ones.
 
-    Possible are those whose matrix of second moments, tr(I) / 2 - I, has no negative eigenvalue.
-    MuJoCo refuses others, which some vendors' files state, of dummy links without mass above all.
+    The nearest ones have a matrix of second moments, tr(I) / 2 - I, without negative eigenvalues.
+    MuJoCo refuses negative moments, which some vendors' files state, of dummy links above all.
 
     Args:
         spec: the specification, which is changed.
@@ -144,7 +147,7 @@ def mend_inertias(spec: Any) -> list[str]:
             continue
         xx, yy, zz, xy, xz, yz = stated
         inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        if np.linalg.eigvalsh(inertia)[0] > 0:
+        if np.linalg.eigvalsh(inertia)[0] >= -ROUNDING:  # a point: `compiled` bounds it
             continue
         values, vectors = np.linalg.eigh(np.trace(inertia) / 2 * np.eye(3) - inertia)
         moments = (vectors * np.maximum(values, SMALLEST_INERTIA)) @ vectors.T
@@ -154,7 +157,7 @@ def mend_inertias(spec: Any) -> list[str]:
     if not changed:
         return []
     return [
-        f"impossible inertia (no positive moments) of {', '.join(changed)}: the nearest possible "
+        f"impossible inertia (a negative moment) of {', '.join(changed)}: the nearest possible "
         f"one is taken"
     ]
 

@@ -57,3 +57,19 @@ def test_an_inertia_that_no_body_has_becomes_the_nearest_possible(tmp_path):
     # moments of inertia -0.01, 0.01, 0.05: the second moments are 0.035, 0.015 and -0.025
     np.testing.assert_allclose(hand, [0.015, 0.035, 0.05], rtol=1e-4)
     assert robot_file.mend_inertias(spec) == []
+
+
+def test_a_point_that_a_file_rounds_below_zero_is_no_impossible_body(tmp_path):
+    path = tmp_path / "robot.urdf"
+    path.write_text(
+        '<robot name="r"><link name="base"/><link name="arm"><inertial><mass value="1"/>'
+        '<inertia ixx="0" iyy="4e-18" izz="0" ixy="0" ixz="0" iyz="-3e-20"/></inertial></link>'
+        '<joint name="a" type="revolute"><parent link="base"/><child link="arm"/>'
+        '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="9" velocity="9"/></joint></robot>'
+    )
+    spec = robot_file.read_spec(path)
+    assert robot_file.mend_inertias(spec) == []
+    model = robot_file.compiled(spec, path)
+    np.testing.assert_allclose(
+        model.body_inertia[model.body("arm").id], robot_file.SMALLEST_INERTIA, rtol=1e-6
+    )
