@@ -134,7 +134,7 @@ def _recording(folder: Path) -> Recording:
     for kind in ("position", "velocity", "effort"):
         path = folder / f"tiago_{kind}.csv"
         try:
-            rows = np.genfromtxt(path, delimiter=",", skip_header=1)
+            rows = np.loadtxt(path, delimiter=",", skiprows=1)
         except OSError as error:
             raise InputError(str(path), "", None, "no such file") from error
         columns[kind] = rows[:, 1:]

@@ -10,9 +10,12 @@ from hyperleg_design.gap.logs.metadata import Metadata
 from hyperleg_design.gap.model.file_subject import of_file
 from hyperleg_design.gap.results.finding import ERROR, NOTE, WARNING
 
+TORQUES = "motor_torque", "motor_torque_command", "motor_current"
 
-def found(log, severity):
-    return [(f.signal, f.what) for f in check_log(log).findings if f.severity == severity]
+
+def found(log, severity, subject=None):
+    findings = check_log(log, subject).findings
+    return [(f.signal, f.what) for f in findings if f.severity == severity]
 
 
 def test_a_sound_log():
@@ -153,20 +156,13 @@ def two_joints(tmp_path_factory):
 
 
 def test_what_is_left_out_of_a_robots_file_is_told(two_joints):
-    notes = [what for signal, what in told(rig_log(), two_joints) if signal == ROBOT]
+    notes = [what for signal, what in found(rig_log(), NOTE, two_joints) if signal == ROBOT]
     assert notes == ["1 equality constraints (closed loops, mimic joints) are left out"]
 
 
 def test_joints_whose_torque_no_signal_tells_are_told(two_joints):
     log = rig_log()
-    assert not [what for _, what in told(log, two_joints) if "is in no signal" in what]
+    assert not [what for _, what in found(log, NOTE, two_joints) if "is in no signal" in what]
     blind = spoiled(log, position_target__knee=None, **{f"{t}__knee": None for t in TORQUES})
-    (note,) = (what for _, what in told(blind, two_joints) if "is in no signal" in what)
+    (note,) = (what for _, what in found(blind, NOTE, two_joints) if "is in no signal" in what)
     assert note.startswith("torque of knee is")
-
-
-TORQUES = "motor_torque", "motor_torque_command", "motor_current"
-
-
-def told(log, subject):
-    return [(f.signal, f.what) for f in check_log(log, subject).findings if f.severity == NOTE]
